@@ -1,0 +1,17 @@
+# Debian bookworm packages; docs/design/dependencies.md says why each is there.
+find_package(PkgConfig REQUIRED)
+find_package(MPI REQUIRED COMPONENTS C CXX)
+pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET "PETSc>=3.18")
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(yaml-cpp 0.7 REQUIRED)
+
+find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
+find_library(METIS_LIBRARY metis REQUIRED)
+if(NOT TARGET evert::metis)
+  add_library(evert_metis INTERFACE)
+  add_library(evert::metis ALIAS evert_metis)
+  set_target_properties(evert_metis PROPERTIES EXPORT_NAME metis)
+  target_include_directories(evert_metis SYSTEM INTERFACE $<BUILD_INTERFACE:${METIS_INCLUDE_DIR}>)
+  target_link_libraries(evert_metis INTERFACE ${METIS_LIBRARY})
+endif()

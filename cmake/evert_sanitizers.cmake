@@ -1,0 +1,11 @@
+# -DEVERT_SANITIZE=ON: AddressSanitizer and UndefinedBehaviorSanitizer. -DEVERT_COVERAGE=ON: gcov.
+option(EVERT_SANITIZE "Build with ASan and UBSan" OFF)
+option(EVERT_COVERAGE "Build for gcov" OFF)
+if(EVERT_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+if(EVERT_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()

@@ -1,0 +1,64 @@
+#pragma once
+#include <petscksp.h>
+#include <petscvec.h>
+
+#include <source_location>
+#include <stdexcept>
+#include <utility>
+
+/// Thin move-only handles over PETSc objects, and the one place where its error codes are looked at.
+namespace evert {
+
+/// PETSc or MPI reported an error. Not to be recovered from: collective state is unknown.
+class PetscFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+[[noreturn]] void petsc_failed(PetscErrorCode code, const std::source_location& where);
+
+/// Throws PetscFailure unless `code` is 0.
+inline void check(PetscErrorCode code, const std::source_location& where = std::source_location::current()) {
+  if (code != 0) [[unlikely]]
+    petsc_failed(code, where);
+}
+
+/// Owns one PETSc object; `Destroy` is its destructor, e.g. VecDestroy.
+template <class Object, PetscErrorCode (*Destroy)(Object*)>
+class PetscHandle {
+ public:
+  PetscHandle() = default;
+  /// Takes over the reference that `object` holds.
+  explicit PetscHandle(Object object) : object_(object) {}
+  PetscHandle(PetscHandle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  PetscHandle& operator=(PetscHandle&& other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  PetscHandle(const PetscHandle&) = delete;
+  PetscHandle& operator=(const PetscHandle&) = delete;
+  ~PetscHandle() {
+    if (object_ != nullptr) static_cast<void>(Destroy(&object_));
+  }
+
+  [[nodiscard]] Object get() const { return object_; }
+  /// For PETSc's creating calls: check(VecCreate(comm, vec.out())). Destroys what was held.
+  [[nodiscard]] Object* out() {
+    if (object_ != nullptr) check(Destroy(&object_));
+    return &object_;
+  }
+  explicit operator bool() const { return object_ != nullptr; }
+
+ private:
+  Object object_ = nullptr;
+};
+
+using VecHandle = PetscHandle<Vec, VecDestroy>;
+using MatHandle = PetscHandle<Mat, MatDestroy>;
+using KspHandle = PetscHandle<KSP, KSPDestroy>;
+using IsHandle = PetscHandle<IS, ISDestroy>;
+using VecScatterHandle = PetscHandle<VecScatter, VecScatterDestroy>;
+using MatNullSpaceHandle = PetscHandle<MatNullSpace, MatNullSpaceDestroy>;
+using LocalToGlobalHandle = PetscHandle<ISLocalToGlobalMapping, ISLocalToGlobalMappingDestroy>;
+
+}  // namespace evert
