@@ -1,0 +1,245 @@
+#pragma once
+#include "evert/materials/damping.hpp"
+#include "evert/materials/lame.hpp"
+#include "evert/math/vec3.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// A scene as plain values, SI units, already checked: what scene/load.hpp makes and scene/build.hpp turns
+/// into objects. Keys, units, ranges and help stand in the tables of src/scene/schema_*.cpp, and only there.
+/// A feature that the scene does not name is an empty optional or an empty list.
+namespace evert {
+
+// --- the mesh of a body
+// ---------------------------------------------------------------------------------------
+
+/// A mesh file; the format is known by its content and ending.
+struct FileMesh {
+  std::string path;                 ///< relative ones are relative to the scene file; resolved here
+  std::vector<std::string> groups;  ///< named volume groups to keep; empty: all
+};
+
+enum class BoxCell { hex8, tet5, tet6, bcc };
+
+struct BoxMesh {
+  Vec3d min{};  ///< [m]
+  Vec3d max{};  ///< [m]
+  BoxCell cell = BoxCell::tet6;
+  std::array<int, 3> cells{};  ///< along x, y, z; all 0 when edge_length is given
+  double edge_length = 0;      ///< [m]; 0 when cells are given
+};
+
+/// The implicit shapes are centred at the origin; torus and cylinder have the y axis as theirs.
+struct BallMesh {
+  double radius = 0;       ///< [m]
+  double edge_length = 0;  ///< [m]
+};
+struct TorusMesh {
+  double major_radius = 0;  ///< [m]
+  double minor_radius = 0;  ///< [m]
+  double edge_length = 0;   ///< [m]
+};
+struct CylinderMesh {
+  double radius = 0;       ///< [m]
+  double length = 0;       ///< [m]
+  double edge_length = 0;  ///< [m]
+};
+struct EllipsoidMesh {
+  Vec3d radii{};           ///< [m]
+  double edge_length = 0;  ///< [m]
+};
+
+using MeshConfig = std::variant<FileMesh, BoxMesh, BallMesh, TorusMesh, CylinderMesh, EllipsoidMesh>;
+
+// --- bodies
+// ---------------------------------------------------------------------------------------------------
+
+/// Places the rest shape in the world: fit, then scale, then rotate, then translate.
+struct TransformConfig {
+  std::optional<double>
+      fit;  ///< [m] first centre the bounding box at the origin and make its longest side this long
+  Vec3d scale{{1, 1, 1}};          ///< per axis, > 0
+  Vec3d rotation_axis{{0, 0, 1}};  ///< unit vector
+  double rotation_angle = 0;       ///< [rad] (degrees in the scene)
+  Vec3d translate{};               ///< [m]
+};
+
+enum class StartKind { scramble, flatten_plane, flatten_line, flatten_point, inside_out };
+
+/// Where the nodes start: (1 − amplitude)·rest + amplitude·target, target being a random point of the
+/// bounding box (scramble), the projection onto a plane, line or point through the centre of the bounding
+/// box, or the point mirrored at that plane (inside_out).
+struct StartConfig {
+  StartKind kind = StartKind::scramble;
+  double amplitude = 1;    ///< [-] in (0, 1]
+  Vec3d axis{{0, 1, 0}};   ///< unit vector: normal of the plane, direction of the line
+  std::uint64_t seed = 1;  ///< of scramble; the target of a node depends on the seed and its number only
+};
+
+enum class MaterialModel { neo_hookean, rotated_linear, st_venant_kirchhoff };
+
+struct MaterialConfig {
+  MaterialModel model = MaterialModel::neo_hookean;
+  double youngs_modulus = 0;                ///< [Pa] ≥ 0
+  double poissons_ratio = 0;                ///< [-] in (−1, 0.5)
+  std::optional<double> compression_limit;  ///< [-] in (0, 1); empty: the model's own
+  Extension extension = Extension::linear;
+};
+
+/// Exactly one of stiffness_proportional and (alpha, beta) is given.
+struct DampingConfig {
+  DampingModel model = DampingModel::rotated;  ///< never none: then the whole optional is empty
+  std::optional<double> stiffness_proportional;  ///< [s] ≥ 0: α = τλ, β = τμ with the λ, μ of the moment
+  double alpha = 0;                              ///< [Pa s] ≥ 0
+  double beta = 0;                               ///< [Pa s] ≥ 0
+};
+
+/// What differs in one named volume group of the mesh; empty members: as in the body.
+struct GroupConfig {
+  std::string name;
+  std::optional<double> density;  ///< [kg/m^3]
+  std::optional<MaterialConfig> material;
+  std::optional<DampingConfig> damping;
+};
+
+struct BodyConfig {
+  std::string name;
+  MeshConfig mesh;
+  TransformConfig transform;
+  double density = 0;  ///< [kg/m^3] > 0
+  Vec3d velocity{};    ///< [m/s] initial
+  Vec3d spin{};        ///< [rad/s] initial, about the centre of mass
+  std::optional<StartConfig> start;
+  MaterialConfig material;
+  std::optional<DampingConfig> damping;
+  std::vector<GroupConfig> groups;
+};
+
+// --- obstacles and constraints
+// --------------------------------------------------------------------------------
+
+/// Everything on the far side of the plane is solid.
+struct HalfSpaceConfig {
+  Vec3d normal{{0, 1, 0}};  ///< unit vector, out of the solid
+  Vec3d point{};            ///< [m] a point of the plane at t = 0
+};
+
+struct SphereConfig {
+  Vec3d center{};     ///< [m] at t = 0
+  double radius = 0;  ///< [m] > 0
+};
+
+struct ObstacleConfig {
+  std::string name;
+  std::variant<HalfSpaceConfig, SphereConfig> shape;
+  double friction = 0;  ///< [-] Coulomb coefficient ≥ 0
+  Vec3d velocity{};     ///< [m/s] constant
+};
+
+/// Nodes whose position at rest, after the body's transform, lies inside (or on) the region.
+struct BoxSelection {
+  Vec3d min{};  ///< [m]
+  Vec3d max{};  ///< [m]
+};
+struct SphereSelection {
+  Vec3d center{};     ///< [m]
+  double radius = 0;  ///< [m]
+};
+/// A set of nodes named by the mesh file or the generator (a box has x_min, x_max, ..., z_max).
+struct NamedSelection {
+  std::string node_set;
+};
+using NodeSelection = std::variant<NamedSelection, BoxSelection, SphereSelection>;
+
+struct VelocityKey {
+  double time = 0;   ///< [s]
+  Vec3d velocity{};  ///< [m/s]
+};
+
+/// Nodes whose velocity is prescribed.
+struct ConstraintConfig {
+  std::size_t body = 0;  ///< index into SceneConfig::bodies
+  NodeSelection nodes;
+  /// Linear in between, constant outside; times strictly increasing; never empty ({0, 0} for `fixed: true`).
+  std::vector<VelocityKey> velocity;
+  std::array<bool, 3> axes{true, true, true};              ///< components that are prescribed
+  double from = 0;                                         ///< [s]
+  double until = std::numeric_limits<double>::infinity();  ///< [s]
+};
+
+// --- events
+// ---------------------------------------------------------------------------------------------------
+
+enum class EventTarget {
+  youngs_modulus,
+  poissons_ratio,
+  stiffness_proportional,
+  alpha,
+  beta,
+  gravity,
+  friction
+};
+
+/// A value that changes at a time. Listed in order of time (the scene's order among equals).
+struct EventConfig {
+  double at = 0;    ///< [s]
+  std::string set;  ///< as written: bodies.torus.material.youngs_modulus
+  EventTarget target = EventTarget::youngs_modulus;
+  std::size_t owner = 0;             ///< index into bodies; into obstacles for friction; unused for gravity
+  std::optional<std::size_t> group;  ///< index into BodyConfig::groups when the target lies in a group
+  double value = 0;                  ///< unless gravity
+  Vec3d vector{};                    ///< gravity
+};
+
+// --- the run
+// --------------------------------------------------------------------------------------------------
+
+enum class OutputField { velocity, min_stretch, inversion, rank };
+
+struct OutputConfig {
+  std::string directory;                    ///< runs/<name> unless given; relative to the working directory
+  std::optional<double> frames_per_second;  ///< [1/s]; empty: no frames are written
+  std::vector<OutputField> fields;          ///< besides the positions
+  std::optional<double> energy_log;         ///< [s] between rows, 0: every step; empty: no log
+};
+
+enum class IntegrationMethod { newmark };
+
+struct IntegratorConfig {
+  IntegrationMethod method = IntegrationMethod::newmark;
+  std::optional<double> time_step;    ///< [s]; empty: auto
+  double safety = 0.9;                ///< [-] of the stable step, with auto
+  double max_strain_increment = 0.1;  ///< [-] largest change of strain in one step, with auto
+};
+
+struct CheckpointConfig {
+  std::optional<double> every_simulated;  ///< [s]
+  std::optional<double> every_wall;       ///< [s]
+};
+
+struct SceneConfig {
+  std::string name;
+  double end_time = 0;  ///< [s]
+  OutputConfig output;
+  Vec3d gravity{};  ///< [m/s^2]
+  std::vector<BodyConfig> bodies;
+  std::vector<ObstacleConfig> obstacles;
+  std::vector<ConstraintConfig> constraints;
+  std::vector<EventConfig> events;
+  IntegratorConfig integrator;
+  std::optional<CheckpointConfig> checkpoint;
+  std::vector<std::pair<std::string, std::string>> petsc;  ///< option (no dash) and value, in order
+
+  std::string file;  ///< the scene file it came from
+  std::string text;  ///< its text after overrides, in a canonical form: equal texts are equal scenes
+};
+
+}  // namespace evert
