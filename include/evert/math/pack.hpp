@@ -1,0 +1,328 @@
+#pragma once
+#include "evert/math/always_inline.hpp"
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <experimental/simd>
+#include <type_traits>
+
+/// A SIMD pack and, under the same names, the same operations on float, double and long double: a kernel is
+/// one template on its scalar `T` and runs on any of them.
+///
+///   template <class T> T clamped(T x, T limit) { return select(x < limit, limit, x); }   // T = double or
+///   Pack
+///
+/// The width follows the -march of the translation unit: `Pack` holds 2 doubles on x86-64-v2, 4 on v3, 8 on
+/// v4. It is a different type on each, so templates over it never meet at link time (see always_inline.hpp).
+namespace evert {
+
+namespace stdx = std::experimental;
+
+/// Thin wrapper of std::experimental::simd: its operators, and nothing found by surprise through ADL.
+template <class Simd>
+class BasicPack {
+ public:
+  using Scalar = typename Simd::value_type;
+  using Mask = typename Simd::mask_type;
+  static constexpr std::size_t lanes = Simd::size();
+
+  BasicPack() = default;
+  EVERT_ALWAYS_INLINE BasicPack(Scalar every_lane) : simd_(every_lane) {}
+  EVERT_ALWAYS_INLINE explicit BasicPack(const Simd& simd) : simd_(simd) {}
+  template <class Number>
+  requires(std::is_arithmetic_v<Number> && !std::same_as<Number, Scalar>) EVERT_ALWAYS_INLINE
+      explicit BasicPack(Number every_lane)
+      : simd_(static_cast<Scalar>(every_lane)) {}
+
+  EVERT_ALWAYS_INLINE const Simd& simd() const { return simd_; }
+
+  // clang-format off
+  EVERT_ALWAYS_INLINE friend BasicPack operator+(const BasicPack& a, const BasicPack& b) { return BasicPack(a.simd_ + b.simd_); }
+  EVERT_ALWAYS_INLINE friend BasicPack operator-(const BasicPack& a, const BasicPack& b) { return BasicPack(a.simd_ - b.simd_); }
+  EVERT_ALWAYS_INLINE friend BasicPack operator*(const BasicPack& a, const BasicPack& b) { return BasicPack(a.simd_ * b.simd_); }
+  EVERT_ALWAYS_INLINE friend BasicPack operator/(const BasicPack& a, const BasicPack& b) { return BasicPack(a.simd_ / b.simd_); }
+  EVERT_ALWAYS_INLINE friend BasicPack operator-(const BasicPack& a) { return BasicPack(-a.simd_); }
+  EVERT_ALWAYS_INLINE friend BasicPack& operator+=(BasicPack& a, const BasicPack& b) { return a = a + b; }
+  EVERT_ALWAYS_INLINE friend BasicPack& operator-=(BasicPack& a, const BasicPack& b) { return a = a - b; }
+  EVERT_ALWAYS_INLINE friend BasicPack& operator*=(BasicPack& a, const BasicPack& b) { return a = a * b; }
+  EVERT_ALWAYS_INLINE friend BasicPack& operator/=(BasicPack& a, const BasicPack& b) { return a = a / b; }
+  EVERT_ALWAYS_INLINE friend Mask operator<(const BasicPack& a, const BasicPack& b) { return a.simd_ < b.simd_; }
+  EVERT_ALWAYS_INLINE friend Mask operator>(const BasicPack& a, const BasicPack& b) { return a.simd_ > b.simd_; }
+  EVERT_ALWAYS_INLINE friend Mask operator<=(const BasicPack& a, const BasicPack& b) { return a.simd_ <= b.simd_; }
+  EVERT_ALWAYS_INLINE friend Mask operator>=(const BasicPack& a, const BasicPack& b) { return a.simd_ >= b.simd_; }
+  EVERT_ALWAYS_INLINE friend Mask operator==(const BasicPack& a, const BasicPack& b) { return a.simd_ == b.simd_; }
+  EVERT_ALWAYS_INLINE friend Mask operator!=(const BasicPack& a, const BasicPack& b) { return a.simd_ != b.simd_; }
+  // clang-format on
+
+ private:
+  Simd simd_;
+};
+
+using Pack = BasicPack<stdx::native_simd<double>>;      ///< doubles of one register
+using FloatPack = BasicPack<stdx::native_simd<float>>;  ///< floats of one register
+
+namespace detail {
+
+template <class T>
+struct PackTraits;
+
+template <std::floating_point T>
+struct PackTraits<T> {
+  using Scalar = T;
+  using Mask = bool;
+  static constexpr std::size_t lanes = 1;
+};
+
+template <class Simd>
+struct PackTraits<BasicPack<Simd>> {
+  using Scalar = typename BasicPack<Simd>::Scalar;
+  using Mask = typename BasicPack<Simd>::Mask;
+  static constexpr std::size_t lanes = BasicPack<Simd>::lanes;
+};
+
+/// The unsigned integer of a float's or double's width.
+template <std::floating_point Scalar>
+using BitsOf = std::conditional_t<sizeof(Scalar) == 8, std::uint64_t, std::uint32_t>;
+
+}  // namespace detail
+
+/// Numbers in a T: 1 for a scalar.
+template <class T>
+inline constexpr std::size_t lanes_v = detail::PackTraits<T>::lanes;
+/// What a lane of T holds: double for Pack and for double itself.
+template <class T>
+using scalar_t = typename detail::PackTraits<T>::Scalar;
+/// What comparing two T gives: bool, or one truth value a lane.
+template <class T>
+using mask_t = typename detail::PackTraits<T>::Mask;
+
+/// What the operations below accept.
+template <class T>
+concept Real = requires {
+  typename detail::PackTraits<T>::Scalar;
+};
+template <class T>
+concept RealPack = Real<T> && !std::floating_point<T>;
+
+// --- lanes
+// ------------------------------------------------------------------------------------------------------
+
+/// The same number in every lane.
+template <Real T>
+EVERT_ALWAYS_INLINE T splat(scalar_t<T> every_lane) {
+  return T(every_lane);
+}
+
+/// lanes_v<T> consecutive numbers; `from` needs no alignment beyond that of a scalar.
+template <Real T>
+EVERT_ALWAYS_INLINE T load(const scalar_t<T>* from) {
+  if constexpr (std::floating_point<T>) {
+    return *from;
+  } else {
+    return T(std::remove_cvref_t<decltype(T().simd())>(from, stdx::element_aligned));
+  }
+}
+
+/// Writes lanes_v<T> consecutive numbers.
+template <Real T>
+EVERT_ALWAYS_INLINE void store(const T& x, scalar_t<T>* to) {
+  if constexpr (std::floating_point<T>) {
+    *to = x;
+  } else {
+    x.simd().copy_to(to, stdx::element_aligned);
+  }
+}
+
+/// The number in one lane, 0 ≤ lane < lanes_v<T>.
+template <Real T>
+EVERT_ALWAYS_INLINE scalar_t<T> lane(const T& x, [[maybe_unused]] std::size_t index) {
+  if constexpr (std::floating_point<T>) {
+    return x;
+  } else {
+    return x.simd()[index];
+  }
+}
+
+/// Lane i holds `number_of_lane(i)`; for gathers.
+template <Real T, class Function>
+EVERT_ALWAYS_INLINE T generate(Function&& number_of_lane) {
+  scalar_t<T> numbers[lanes_v<T>];
+  for (std::size_t i = 0; i < lanes_v<T>; ++i) numbers[i] = number_of_lane(i);
+  return load<T>(numbers);
+}
+
+// --- masks
+// ------------------------------------------------------------------------------------------------------
+
+EVERT_ALWAYS_INLINE bool any(bool mask) { return mask; }
+EVERT_ALWAYS_INLINE bool all(bool mask) { return mask; }
+template <class Scalar, class Abi>
+EVERT_ALWAYS_INLINE bool any(const stdx::simd_mask<Scalar, Abi>& mask) {
+  return stdx::any_of(mask);
+}
+template <class Scalar, class Abi>
+EVERT_ALWAYS_INLINE bool all(const stdx::simd_mask<Scalar, Abi>& mask) {
+  return stdx::all_of(mask);
+}
+
+/// `a` where the mask holds, else `b`; both are evaluated.
+template <Real T>
+EVERT_ALWAYS_INLINE T select(const mask_t<T>& mask, const T& a, const T& b) {
+  if constexpr (std::floating_point<T>) {
+    return mask ? a : b;
+  } else {
+    auto result = b.simd();
+    stdx::where(mask, result) = a.simd();
+    return T(result);
+  }
+}
+
+// --- arithmetic
+// -------------------------------------------------------------------------------------------------
+
+template <Real T>
+EVERT_ALWAYS_INLINE T sqrt(const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return std::sqrt(x);
+  } else {
+    return T(stdx::sqrt(x.simd()));
+  }
+}
+
+template <Real T>
+EVERT_ALWAYS_INLINE T abs(const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return std::abs(x);
+  } else {
+    return T(stdx::abs(x.simd()));
+  }
+}
+
+/// The smaller; `a` where either is NaN, so put the guard last: min(x, limit) keeps a NaN in x.
+template <Real T>
+EVERT_ALWAYS_INLINE T min(const T& a, const std::type_identity_t<T>& b) {
+  return select(b < a, b, a);
+}
+
+/// The larger; `a` where either is NaN, so put the guard last: max(x, limit) keeps a NaN in x.
+template <Real T>
+EVERT_ALWAYS_INLINE T max(const T& a, const std::type_identity_t<T>& b) {
+  return select(b > a, b, a);
+}
+
+/// |magnitude| with the sign bit of `sign`.
+template <Real T>
+EVERT_ALWAYS_INLINE T copysign(const T& magnitude, const std::type_identity_t<T>& sign) {
+  if constexpr (std::floating_point<T>) {
+    return std::copysign(magnitude, sign);
+  } else {
+    return T(stdx::copysign(magnitude.simd(), sign.simd()));
+  }
+}
+
+/// x with its sign flipped where the sign bit of `sign` is set (−0 counts as negative).
+template <Real T>
+EVERT_ALWAYS_INLINE T multiply_sign(const T& x, const std::type_identity_t<T>& sign) {
+  if constexpr (std::floating_point<T>) {
+    return std::signbit(sign) ? -x : x;
+  } else {
+    using Bits [[gnu::vector_size(sizeof(T))]] = detail::BitsOf<scalar_t<T>>;
+    const auto sign_bit = std::bit_cast<Bits>(T(-0.0));
+    return std::bit_cast<T>(std::bit_cast<Bits>(x) ^ (std::bit_cast<Bits>(sign) & sign_bit));
+  }
+}
+
+// --- logarithm
+// --------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+/// Layout of a floating-point number, and the coefficients of fdlibm for log(1+f) = 2s + s·R(s²), s =
+/// f/(2+f): minimax on √½ ≤ 1+f ≤ √2, odd and even powers apart. ln 2 is split so that exponent · ln2_high is
+/// exact.
+template <class Scalar>
+struct LogConstants;
+
+template <>
+struct LogConstants<double> {
+  static constexpr int mantissa_bits = 52;
+  static constexpr double bias = 1023;
+  static constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
+  static constexpr double even[] = {6.666666666666735130e-01, 2.857142874366239149e-01,
+                                    1.818357216161805012e-01, 1.479819860511658591e-01};
+  static constexpr double odd[] = {3.999999999940941908e-01, 2.222219843214978396e-01,
+                                   1.531383769920937332e-01};
+};
+
+template <>
+struct LogConstants<float> {
+  static constexpr int mantissa_bits = 23;
+  static constexpr float bias = 127;
+  static constexpr float ln2_high = 6.9313812256e-01F, ln2_low = 9.0580006145e-06F;
+  static constexpr float even[] = {0.66666662693F, 0.28498786688F};
+  static constexpr float odd[] = {0.40000972152F, 0.24279078841F};
+};
+
+/// c[0] + c[1] x + c[2] x² + …
+template <class T, std::size_t count>
+EVERT_ALWAYS_INLINE T polynomial(const scalar_t<T> (&c)[count], const T& x) {
+  T sum = T(c[count - 1]);
+  for (std::size_t i = count - 1; i > 0; --i) sum = sum * x + T(c[i - 1]);
+  return sum;
+}
+
+template <class T>
+struct MantissaExponent {
+  T mantissa;  ///< in [√½, √2)
+  T exponent;
+};
+
+/// x = mantissa · 2^exponent for positive normal x, by its bits.
+template <RealPack T>
+EVERT_ALWAYS_INLINE MantissaExponent<T> split_exponent(const T& x) {
+  using Scalar = scalar_t<T>;
+  using Constants = LogConstants<Scalar>;
+  using Word = BitsOf<Scalar>;
+  using Bits [[gnu::vector_size(sizeof(T))]] = Word;
+  constexpr Word implicit_bit = Word{1} << Constants::mantissa_bits;
+  constexpr auto implicit_bit_value = Scalar(implicit_bit);
+
+  const Bits bits = std::bit_cast<Bits>(x);
+  const T one_to_two = std::bit_cast<T>((bits & (implicit_bit - 1)) | std::bit_cast<Word>(Scalar(1)));
+  // An integer below 2^52 becomes a double by standing in the mantissa of 2^52, which is then subtracted.
+  const Bits exponent_in_mantissa =
+      (bits >> Constants::mantissa_bits) | std::bit_cast<Word>(implicit_bit_value);
+  const T biased_exponent = std::bit_cast<T>(exponent_in_mantissa) - T(implicit_bit_value);
+  const auto upper = one_to_two > T(Scalar(1.41421356237309504880L));
+  return {select(upper, T(Scalar(0.5)) * one_to_two, one_to_two),
+          biased_exponent - select(upper, T(Constants::bias - 1), T(Constants::bias))};
+}
+
+}  // namespace detail
+
+/// Natural logarithm of a positive normal number, to about 1 ulp. NaN and ∞ give NaN in a pack; zero,
+/// negative and subnormal numbers give a meaningless finite number there: clamp before.
+template <Real T>
+EVERT_ALWAYS_INLINE T log(const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return std::log(x);
+  } else {
+    using Scalar = scalar_t<T>;
+    using Constants = detail::LogConstants<Scalar>;
+    const auto [mantissa, exponent] = detail::split_exponent(x);
+    const T f = mantissa - T(Scalar(1));
+    const T s = f / (T(Scalar(2)) + f);
+    const T z = s * s;
+    const T w = z * z;
+    const T remainder =
+        z * detail::polynomial(Constants::even, w) + w * detail::polynomial(Constants::odd, w);
+    const T half_square = T(Scalar(0.5)) * f * f;
+    const T low = s * (half_square + remainder) + exponent * T(Constants::ln2_low) + (x - x);
+    return exponent * T(Constants::ln2_high) - ((half_square - low) - f);
+  }
+}
+
+}  // namespace evert
