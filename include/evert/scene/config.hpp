@@ -62,14 +62,18 @@ using MeshConfig = std::variant<FileMesh, BoxMesh, BallMesh, TorusMesh, Cylinder
 // --- bodies
 // ---------------------------------------------------------------------------------------------------
 
-/// Places the rest shape in the world: fit, then scale, then rotate, then translate.
+/// By the right-hand rule about the origin.
+struct RotationConfig {
+  Vec3d axis{{0, 0, 1}};  ///< unit vector
+  double angle = 0;       ///< [degrees]
+};
+
+/// Makes the rest shape and places it in the world: fit, then scale, then rotate, then translate.
 struct TransformConfig {
-  std::optional<double>
-      fit;  ///< [m] first centre the bounding box at the origin and make its longest side this long
-  Vec3d scale{{1, 1, 1}};          ///< per axis, > 0
-  Vec3d rotation_axis{{0, 0, 1}};  ///< unit vector
-  double rotation_angle = 0;       ///< [rad] (degrees in the scene)
-  Vec3d translate{};               ///< [m]
+  std::optional<double> fit;  ///< [m] centre the bounding box at the origin, make its longest side this long
+  double scale = 1;           ///< [-] > 0
+  std::optional<RotationConfig> rotate;
+  Vec3d translate{};  ///< [m]
 };
 
 enum class StartKind { scramble, flatten_plane, flatten_line, flatten_point, inside_out };
@@ -166,9 +170,11 @@ struct VelocityKey {
 
 /// Nodes whose velocity is prescribed.
 struct ConstraintConfig {
-  std::size_t body = 0;  ///< index into SceneConfig::bodies
+  std::string body;
+  std::size_t body_index = 0;  ///< into SceneConfig::bodies
   NodeSelection nodes;
-  /// Linear in between, constant outside; times strictly increasing; never empty ({0, 0} for `fixed: true`).
+  bool fixed = false;  ///< then velocity is one key, 0 at 0 s
+  /// Linear in between, constant outside; times strictly increasing; never empty.
   std::vector<VelocityKey> velocity;
   std::array<bool, 3> axes{true, true, true};              ///< components that are prescribed
   double from = 0;                                         ///< [s]
@@ -239,7 +245,9 @@ struct SceneConfig {
   std::vector<std::pair<std::string, std::string>> petsc;  ///< option (no dash) and value, in order
 
   std::string file;  ///< the scene file it came from
-  std::string text;  ///< its text after overrides, in a canonical form: equal texts are equal scenes
+  std::string text;  ///< the scene after overrides, in a canonical form
+  /// The part of the text that a restart must share: all but the duration, output, checkpoints and solver.
+  std::string identity;
 };
 
 }  // namespace evert
