@@ -1,0 +1,54 @@
+#pragma once
+#include <petsclog.h>
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+/// Where the time goes: one set of phases, shown by PETSc's -log_view and, without any option, in summary.json.
+namespace evert {
+
+enum class Phase : std::size_t {
+  setup,          ///< meshes, partition, element data
+  force,          ///< elastic forces: deformation gradients, their SVD, stresses, scatter
+  stretch_svd,    ///< singular values for reports: minimum stretches, stable step
+  damping_apply,  ///< products with the damping operator
+  damping_solve,  ///< the conjugate gradients around them, those products included
+  contact,        ///< obstacles and friction
+  vector_update,  ///< nodal updates of positions and velocities
+  halo,           ///< waiting for ghost values
+  io,             ///< frames, logs and checkpoints
+};
+inline constexpr std::size_t phase_count = 9;
+[[nodiscard]] std::string_view name_of(Phase phase);
+
+/// Registers the phases as PETSc events, and "Evert set-up" and "Evert time steps" as stages. Call once after PetscInitialize.
+void register_log_events();
+
+enum class Stage { setup, time_steps };
+/// Names the stage that -log_view books what follows under, until the object dies.
+class StageScope {
+ public:
+  explicit StageScope(Stage stage);
+  ~StageScope();
+  StageScope(const StageScope&) = delete;
+  StageScope& operator=(const StageScope&) = delete;
+};
+
+/// Books the wall time of its life, and `flops`, to a phase.
+class PhaseScope {
+ public:
+  explicit PhaseScope(Phase phase, double flops = 0);
+  ~PhaseScope();
+  PhaseScope(const PhaseScope&) = delete;
+  PhaseScope& operator=(const PhaseScope&) = delete;
+
+ private:
+  Phase phase_;
+  double begin_;
+};
+
+/// Wall seconds of this rank booked to each phase so far.
+[[nodiscard]] const std::array<double, phase_count>& phase_seconds();
+
+}  // namespace evert

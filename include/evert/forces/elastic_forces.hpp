@@ -1,0 +1,66 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "evert/forces/elastic_block.hpp"
+#include "evert/mesh/distributed_mesh.hpp"
+
+/// The elastic bodies of a rank: the one loop that owns gather, kernel and scatter, and overlaps the halo with
+/// interior elements.
+namespace evert {
+
+/// What one entry of DistributedMesh::cells is made of.
+struct ElasticProperties {
+  double density = 0;  ///< [kg/m^3]
+  Material material;
+  Damping damping;
+};
+
+class ElasticForces {
+ public:
+  /// Collective. One ElasticBlock per entry of `mesh.cells`, with `properties` of its region; a UserError of any
+  /// rank (cells without volume) is thrown on all.
+  ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties);
+
+  /// Collective. Brings the ghosts of `x` up to date, then `f` = elastic forces at x [N], summed over ranks on
+  /// owned nodes; C(x) is kept for apply_damping.  PHYSICS 5: F and its SVD once per step, here
+  void update(NodeField& x, NodeField& f);
+
+  /// Collective. `out` += factor · C v on owned nodes; updates the ghosts of `v`. The ghosts of `out` are scratch.
+  void add_damping(NodeField& v, NodeField& out, double factor) const;
+
+  /// Collective. Owned 3×3 diagonal blocks of C, 9 numbers by columns per owned node.
+  void damping_diagonal(std::span<double> blocks) const;
+
+  /// True when any block of any rank is damped.
+  [[nodiscard]] bool damped() const { return damped_; }
+
+  // Sums over this rank's cells, at positions whose ghosts are up to date:
+  [[nodiscard]] double energy(const NodeField& x) const;
+  [[nodiscard]] LocalIndex inverted_points(const NodeField& x) const;
+  [[nodiscard]] StableStep stable_step(const NodeField& x) const;
+  [[nodiscard]] double max_strain_rate(const NodeField& x, const NodeField& v) const;
+  /// Smallest signed stretch per cell of block `block`.
+  void min_stretch(const NodeField& x, std::size_t block, std::span<double> per_cell) const;
+
+  /// Lumped masses of the owned nodes [kg].
+  [[nodiscard]] std::span<const double> masses() const { return masses_; }
+  [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
+  [[nodiscard]] const Halo& halo() const { return halo_; }
+  /// Changes the material of every block of `region`. Not collective; call update() afterwards.
+  void set_properties(std::int32_t region, const ElasticProperties& properties);
+  /// Bytes of element data on this rank.
+  [[nodiscard]] std::size_t memory() const;
+
+ private:
+  const DistributedMesh& mesh_;
+  Halo halo_;
+  std::vector<std::unique_ptr<ElasticBlock>> blocks_;  // parallel to mesh_.cells; null where a rank has no cells
+  std::vector<double> masses_;
+  mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
+  mutable std::vector<double> local_diagonal_;
+  bool damped_ = false;
+};
+
+}  // namespace evert

@@ -1,0 +1,39 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "evert/contact/collisions.hpp"
+#include "evert/contact/prescribed_motion.hpp"
+#include "evert/forces/elastic_forces.hpp"
+
+namespace evert {
+
+/// What an integrator advances: the state, and references to everything that acts on it.
+struct System {
+  const DistributedMesh& mesh;
+  ElasticForces& elastic;
+  Collisions& collisions;
+  PrescribedMotion& prescribed;
+  Vec3d gravity;  ///< [m/s^2]
+
+  NodeField x;  ///< positions [m]; ghosts are up to date between steps
+  NodeField v;  ///< velocities [m/s]
+  NodeField f;  ///< elastic forces and weight at x, owned nodes [N]
+  double time = 0;  ///< [s]
+
+  /// Impulses received since the start, this rank's share [N s].
+  struct Impulses {
+    Vec3d gravity{}, contact{}, constraint{};
+  } impulses;
+
+  System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
+         PrescribedMotion& prescribed_motion, const Vec3d& gravitation);
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+
+  [[nodiscard]] std::span<const double> masses() const { return elastic.masses(); }
+  /// Collective. f = elastic forces + m g at x, and C(x). To be called whenever x, a material or gravity changes.
+  void update_forces();
+};
+
+}  // namespace evert

@@ -1,0 +1,167 @@
+#include "evert/forces/elastic_forces.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "evert/core/collective.hpp"
+#include "evert/core/log.hpp"
+
+namespace evert {
+namespace {
+
+// Operations per quadrature point as PETSc's log books them, counted once in the tet4 kernels: gather and F,
+// its singular values, stress, scatter; and the two products of the damping operator.
+constexpr double force_flops = 560;
+constexpr double damping_flops = 125;
+
+ElasticCells cells_of(const LocalCells& cells, double density) {
+  return {cells.type, cells.nodes, cells.interior, density};
+}
+
+BatchRange first_half(BatchRange range) { return {range.begin, range.begin + (range.end - range.begin) / 2}; }
+BatchRange second_half(BatchRange range) { return {first_half(range).end, range.end}; }
+
+void clear(std::span<double> values) { std::fill(values.begin(), values.end(), 0.0); }
+
+/// Runs `compute` over all batches while values travel: half of the interior hides the update of `in`, the other half
+/// the sum of `out`, and the boundary stands between.
+template <class Compute>
+void overlapped(const Halo& halo, std::span<const std::unique_ptr<ElasticBlock>> blocks, NodeField& in, NodeField& out,
+                Compute&& compute) {
+  const auto each = [&](auto&& range_of) {
+    for (const auto& block : blocks)
+      if (block != nullptr) compute(*block, range_of(*block));
+  };
+  halo.begin_update(in);
+  each([](const ElasticBlock& block) { return first_half(block.interior()); });
+  halo.end_update(in);
+  each([](const ElasticBlock& block) { return block.boundary(); });
+  halo.begin_add(out);
+  each([](const ElasticBlock& block) { return second_half(block.interior()); });
+  halo.end_add(out);
+}
+
+double points_of(const DistributedMesh& mesh) {
+  double points = 0;
+  for (const auto& cells : mesh.cells) points += quadrature_points(cells.type) * static_cast<double>(cells.size());
+  return points;
+}
+
+}  // namespace
+
+ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties)
+    : mesh_(mesh), halo_(mesh), scratch_(mesh) {
+  const auto properties_of = [&](const LocalCells& cells) -> const ElasticProperties& {
+    return properties[static_cast<std::size_t>(cells.region)];
+  };
+  on_every_rank(mesh.comm, [&] {
+    for (const auto& cells : mesh.cells) {
+      const auto& [density, material, damping] = properties_of(cells);
+      blocks_.push_back(cells.size() == 0 ? nullptr
+                                          : make_elastic_block(cells_of(cells, density), mesh.rest_positions, material,
+                                                               damping));
+      damped_ = damped_ || damping.model != DampingModel::none;
+    }
+  });
+
+  std::vector<double> local_masses(static_cast<std::size_t>(mesh.local_nodes()));
+  for (const auto& cells : mesh.cells)
+    add_lumped_mass(cells_of(cells, properties_of(cells).density), mesh.rest_positions, local_masses);
+  auto summed = scratch_.local();
+  for (std::size_t i = 0; i < summed.size(); ++i) summed[i] = local_masses[i / 3];
+  halo_.begin_add(scratch_);
+  halo_.end_add(scratch_);
+  masses_.resize(static_cast<std::size_t>(mesh.owned_nodes));
+  for (std::size_t i = 0; i < masses_.size(); ++i) masses_[i] = summed[3 * i];
+
+  if (damped_) local_diagonal_.resize(9 * static_cast<std::size_t>(mesh.local_nodes()));
+}
+
+void ElasticForces::update(NodeField& x, NodeField& f) {
+  const PhaseScope scope(Phase::force, force_flops * points_of(mesh_));
+  clear(f.local());
+  overlapped(halo_, blocks_, x, f, [&](ElasticBlock& block, BatchRange batches) {
+    block.update(x.local().data(), f.local().data(), batches);
+  });
+  f.touched();
+}
+
+void ElasticForces::add_damping(NodeField& v, NodeField& out, double factor) const {
+  const PhaseScope scope(Phase::damping_apply, damping_flops * points_of(mesh_));
+  clear(out.local().subspan(out.owned().size()));
+  overlapped(halo_, blocks_, v, out, [&](const ElasticBlock& block, BatchRange batches) {
+    if (block.damped()) block.add_damping(v.local().data(), out.local().data(), factor, batches);
+  });
+  out.touched();
+}
+
+void ElasticForces::damping_diagonal(std::span<double> blocks) const {
+  clear(local_diagonal_);
+  for (const auto& block : blocks_)
+    if (block != nullptr && block->damped()) block->add_damping_diagonal(local_diagonal_.data(), 1.0);
+  // Three values a node travel at a time: one column of the blocks.
+  const auto nodes = static_cast<std::size_t>(mesh_.local_nodes());
+  for (std::size_t column = 0; column < 3; ++column) {
+    auto values = scratch_.local();
+    for (std::size_t node = 0; node < nodes; ++node)
+      std::copy_n(&local_diagonal_[9 * node + 3 * column], 3, &values[3 * node]);
+    halo_.begin_add(scratch_);
+    halo_.end_add(scratch_);
+    for (std::size_t node = 0; 9 * node < blocks.size(); ++node)
+      std::copy_n(&values[3 * node], 3, &blocks[9 * node + 3 * column]);
+  }
+}
+
+double ElasticForces::energy(const NodeField& x) const {
+  double sum = 0;
+  for (const auto& block : blocks_)
+    if (block != nullptr) sum += block->energy(x.local().data());
+  return sum;
+}
+
+LocalIndex ElasticForces::inverted_points(const NodeField& x) const {
+  LocalIndex sum = 0;
+  for (const auto& block : blocks_)
+    if (block != nullptr) sum += block->inverted_points(x.local().data());
+  return sum;
+}
+
+StableStep ElasticForces::stable_step(const NodeField& x) const {
+  const PhaseScope scope(Phase::stretch_svd);
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
+  StableStep smallest{unbounded, unbounded};
+  for (const auto& block : blocks_) {
+    if (block == nullptr) continue;
+    const auto step = block->stable_step(x.local().data());
+    smallest.undamped = std::min(smallest.undamped, step.undamped);
+    smallest.damped = std::min(smallest.damped, step.damped);
+  }
+  return smallest;
+}
+
+double ElasticForces::max_strain_rate(const NodeField& x, const NodeField& v) const {
+  double largest = 0;
+  for (const auto& block : blocks_)
+    if (block != nullptr) largest = std::max(largest, block->max_strain_rate(x.local().data(), v.local().data()));
+  return largest;
+}
+
+void ElasticForces::min_stretch(const NodeField& x, std::size_t block, std::span<double> per_cell) const {
+  const PhaseScope scope(Phase::stretch_svd);
+  if (blocks_[block] != nullptr) blocks_[block]->min_stretch(x.local().data(), per_cell);
+}
+
+void ElasticForces::set_properties(std::int32_t region, const ElasticProperties& properties) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
+      blocks_[i]->set_material(properties.material, properties.damping);
+}
+
+std::size_t ElasticForces::memory() const {
+  std::size_t bytes = 0;
+  for (const auto& block : blocks_)
+    if (block != nullptr) bytes += block->memory();
+  return bytes;
+}
+
+}  // namespace evert
