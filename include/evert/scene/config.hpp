@@ -19,7 +19,6 @@
 namespace evert {
 
 // --- the mesh of a body
-// ---------------------------------------------------------------------------------------
 
 /// A mesh file; the format is known by its content and ending.
 struct FileMesh {
@@ -60,7 +59,6 @@ struct EllipsoidMesh {
 using MeshConfig = std::variant<FileMesh, BoxMesh, BallMesh, TorusMesh, CylinderMesh, EllipsoidMesh>;
 
 // --- bodies
-// ---------------------------------------------------------------------------------------------------
 
 /// By the right-hand rule about the origin.
 struct RotationConfig {
@@ -128,7 +126,6 @@ struct BodyConfig {
 };
 
 // --- obstacles and constraints
-// --------------------------------------------------------------------------------
 
 /// Everything on the far side of the plane is solid.
 struct HalfSpaceConfig {
@@ -182,7 +179,6 @@ struct ConstraintConfig {
 };
 
 // --- events
-// ---------------------------------------------------------------------------------------------------
 
 enum class EventTarget {
   youngs_modulus,
@@ -206,7 +202,6 @@ struct EventConfig {
 };
 
 // --- the run
-// --------------------------------------------------------------------------------------------------
 
 enum class OutputField { velocity, min_stretch, inversion, rank };
 
