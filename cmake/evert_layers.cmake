@@ -1,10 +1,12 @@
-# The layers, bottom first (docs/design/layers.md). cmake/check_layers enforces the order in CI.
+# The layers, bottom first (docs/design/layers.md): each includes and links only those before it. The order is
+# enforced by cmake/check_layers.cmake for includes and by add_layer for links.
 set(EVERT_LAYERS core math mesh elements materials forces filter contact topology integrators sim io scene app)
 
 # add_layer(<name> SOURCES a.cpp ... [LINK layer-or-target ...])
 # One library per layer: evert_<name>, alias evert::<name>, headers in include/evert/<name>.
 function(add_layer name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  evert_check_links(${name} "${ARG_LINK}")
   if(ARG_SOURCES)
     add_library(evert_${name} STATIC ${ARG_SOURCES})
     set(scope PUBLIC)
@@ -20,4 +22,19 @@ function(add_layer name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_link_libraries(evert_${name} ${scope} ${ARG_LINK})
   set_property(GLOBAL APPEND PROPERTY EVERT_LAYER_TARGETS evert_${name})
+endfunction()
+
+# Stops the configuration when layer `name` links a layer that does not stand before it.
+function(evert_check_links name links)
+  list(FIND EVERT_LAYERS ${name} own)
+  if(own EQUAL -1)
+    message(FATAL_ERROR "add_layer: '${name}' is not in EVERT_LAYERS (cmake/evert_layers.cmake)")
+  endif()
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^evert(::|_)" "" layer "${link}")
+    list(FIND EVERT_LAYERS "${layer}" other)
+    if(NOT other LESS own)
+      message(FATAL_ERROR "add_layer: '${name}' links '${link}', a layer above it (cmake/evert_layers.cmake)")
+    endif()
+  endforeach()
 endfunction()

@@ -1,34 +1,53 @@
-# add_unit_test(<name> SOURCES ... LINK ... [LABELS ...]): one GoogleTest binary, discovered by ctest.
-# add_mpi_test(<name> SOURCES ... LINK ... [RANKS 1 2 3]): the same binary run by mpirun once per rank count.
+# add_unit_test(<name> SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds])
+#   One GoogleTest binary; ctest lists its cases one by one.
+# add_mpi_test(<name> SOURCES ... LINK ... [RANKS 1 2 3] [LABELS ...] [TIMEOUT seconds])
+#   One binary with the main of tests/mpi, run by mpirun once per number of ranks.
+# docs/design/testing.md says where tests live and what the labels mean.
 include(GoogleTest)
 find_package(GTest REQUIRED)
 
-# Every test runs with the same environment: root, oversubscribed, one thread a rank.
+# Every test runs with the same environment: root allowed, oversubscribed, one thread a rank.
 set(EVERT_TEST_ENVIRONMENT
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
   OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none
   OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
   "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0"
+  "UBSAN_OPTIONS=print_stacktrace=1"
   "EVERT_SOURCE_DIR=${PROJECT_SOURCE_DIR}" "EVERT_SHARED_MESHES=${PROJECT_SOURCE_DIR}/../shared/meshes")
 
 function(add_unit_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 600)
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} evert_warnings GTest::gtest GTest::gtest_main)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES
-    ENVIRONMENT "${EVERT_TEST_ENVIRONMENT}" LABELS "${ARG_LABELS}" TIMEOUT 600)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 TEST_LIST discovered_${name})
+  # Properties that are lists do not survive gtest_discover_tests (CMake 3.25): set after the discovery instead.
+  set(properties ${CMAKE_CURRENT_BINARY_DIR}/${name}_properties.cmake)
+  file(CONFIGURE OUTPUT ${properties} @ONLY CONTENT [[
+if(discovered_@name@)
+  set_tests_properties(${discovered_@name@} PROPERTIES
+    ENVIRONMENT "@EVERT_TEST_ENVIRONMENT@" LABELS "unit;@ARG_LABELS@" TIMEOUT @ARG_TIMEOUT@)
+endif()
+]])
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${properties})
 endfunction()
 
 function(add_mpi_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;RANKS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;RANKS;LABELS" ${ARGN})
   if(NOT ARG_RANKS)
     set(ARG_RANKS 1 2 3)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 900)
   endif()
   add_executable(${name} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/tests/mpi/main.cpp)
   target_link_libraries(${name} PRIVATE ${ARG_LINK} evert_core evert_warnings GTest::gtest)
   foreach(ranks IN LISTS ARG_RANKS)
     add_test(NAME ${name}.np${ranks} COMMAND ${MPIEXEC_EXECUTABLE} -n ${ranks} $<TARGET_FILE:${name}>)
     set_tests_properties(${name}.np${ranks} PROPERTIES
-      ENVIRONMENT "${EVERT_TEST_ENVIRONMENT}" LABELS "mpi;${ARG_LABELS}" PROCESSORS ${ranks} TIMEOUT 900)
+      ENVIRONMENT "${EVERT_TEST_ENVIRONMENT}" LABELS "mpi;${ARG_LABELS}" PROCESSORS ${ranks}
+      TIMEOUT ${ARG_TIMEOUT})
   endforeach()
 endfunction()

@@ -1,0 +1,51 @@
+# cmake -DSOURCE_DIR=<evert> -DWORK_DIR=<scratch> -P check_layers_test.cmake
+# Plants violations of each rule in a small tree and sees cmake/check_layers.cmake name them.
+cmake_minimum_required(VERSION 3.24)
+
+# The clean tree: every layer rule is used, none broken.
+function(plant_clean_tree)
+  file(REMOVE_RECURSE ${WORK_DIR})
+  file(WRITE ${WORK_DIR}/include/evert/core/index.hpp "#include <cstdint>\n")
+  file(WRITE ${WORK_DIR}/include/evert/core/petsc.hpp "#include <petscvec.h>\n")
+  file(WRITE ${WORK_DIR}/include/evert/math/vec3.hpp "#include <array>\n")
+  file(WRITE ${WORK_DIR}/include/evert/mesh/halo.hpp "#include \"evert/core/petsc.hpp\"\n")
+  file(WRITE ${WORK_DIR}/include/evert/materials/lame.hpp "#include \"evert/math/vec3.hpp\"\n")
+  file(WRITE ${WORK_DIR}/src/elements/tet4.cpp "#include \"evert/core/index.hpp\"\n#include \"batch.hpp\"\n")
+  file(WRITE ${WORK_DIR}/src/elements/batch.hpp "// nothing\n")
+endfunction()
+
+# Expects the check to pass where `expected` is empty, else to fail with `expected` in what it says.
+function(expect name expected)
+  execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${WORK_DIR} -P ${SOURCE_DIR}/cmake/check_layers.cmake
+    RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  string(REGEX REPLACE "[ \t\r\n]+" " " output "${output}")
+  string(FIND "${output}" "${expected}" place)
+  if(expected AND (code EQUAL 0 OR place EQUAL -1))
+    message(SEND_ERROR "${name}: expected a failure with '${expected}', got ${code}: ${output}")
+  elseif(NOT expected AND NOT code EQUAL 0)
+    message(SEND_ERROR "${name}: expected success, got ${code}: ${output}")
+  else()
+    message(STATUS "${name}: as expected")
+  endif()
+endfunction()
+
+function(expect_violation file text expected)
+  plant_clean_tree()
+  file(WRITE ${WORK_DIR}/${file} "${text}\n")
+  expect(${file} "${expected}")
+endfunction()
+
+plant_clean_tree()
+expect("clean tree" "")
+expect_violation(include/evert/core/bad.hpp "#include \"evert/mesh/halo.hpp\"" "'mesh' is above 'core'")
+expect_violation(src/mesh/bad.cpp "  #  include \"evert/sim/simulation.hpp\"" "'sim' is above 'mesh'")
+expect_violation(src/mesh/bad.cpp "#include \"../forces/gravity.hpp\"" "'forces' is above 'mesh'")
+expect_violation(include/evert/math/bad.hpp "#include \"evert/core/index.hpp\"" "'math' may include only math")
+expect_violation(src/materials/bad.cpp "#include <evert/core/index.hpp>" "'materials' may include only math, materials")
+expect_violation(src/math/bad.cpp "#include <mpi.h>" "includes mpi.h: element physics")
+expect_violation(src/elements/bad.cpp "#include \"evert/mesh/halo.hpp\"" "through it petscvec.h")
+expect_violation(src/forces/kernels/bad.hpp "#include <petscvec.h>" "includes petscvec.h: element physics")
+expect_violation(src/helpers/bad.cpp "#include <array>" "'helpers' is not in EVERT_LAYERS")
+expect_violation(src/app/bad.cpp "#include \"evert/helpers/x.hpp\"" "'helpers' is no layer")
+file(REMOVE_RECURSE ${WORK_DIR})
+expect("empty tree" "no sources")
