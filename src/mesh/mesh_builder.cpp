@@ -1,0 +1,52 @@
+#include "mesh_builder.hpp"
+
+#include "evert/core/error.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace evert {
+
+GlobalIndex MeshBuilder::add_node(const Vec3d& position) {
+  mesh_.nodes.push_back(position);
+  return mesh_.node_count() - 1;
+}
+
+std::int32_t MeshBuilder::region(const std::string& name) {
+  const auto [entry, is_new] =
+      region_numbers_.try_emplace(name, static_cast<std::int32_t>(mesh_.regions.size()));
+  if (is_new) mesh_.regions.push_back(name);
+  return entry->second;
+}
+
+void MeshBuilder::add_cell(CellType type, std::span<const GlobalIndex> nodes, std::int32_t region) {
+  auto& block = blocks_[static_cast<std::size_t>(type)];
+  block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
+  block.region.push_back(region);
+}
+
+void MeshBuilder::add_to_node_set(const std::string& name, std::span<const GlobalIndex> nodes) {
+  auto& set = node_sets_[name];
+  set.insert(set.end(), nodes.begin(), nodes.end());
+}
+
+Mesh MeshBuilder::finish(const std::string& file) && {
+  for (const auto type : all_cell_types) {
+    auto& block = blocks_[static_cast<std::size_t>(type)];
+    block.type = type;
+    if (block.size() > 0) mesh_.cells.push_back(std::move(block));
+  }
+  if (mesh_.cells.empty()) {
+    std::string found = std::to_string(mesh_.node_count()) + " nodes";
+    for (const auto& [kind, count] : lower_cells_) found += ", " + std::to_string(count) + " " + kind;
+    throw UserError(file + ": has no volume cells (tet4, hex8, wedge6 or tet10), only " + found);
+  }
+  for (auto& [name, nodes] : node_sets_) {
+    std::ranges::sort(nodes);
+    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+    mesh_.node_sets.push_back({name, std::move(nodes)});
+  }
+  return std::move(mesh_);
+}
+
+}  // namespace evert
