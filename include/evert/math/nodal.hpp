@@ -1,7 +1,7 @@
 #pragma once
-#include <span>
-
 #include "evert/math/vec3.hpp"
+
+#include <span>
 
 /// One node's value in an array of x y z per node.
 namespace evert {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <experimental/simd>
+#include <limits>
 #include <type_traits>
 
 /// A SIMD pack and, under the same names, the same operations on float, double and long double: a kernel is
@@ -235,7 +236,21 @@ EVERT_ALWAYS_INLINE T multiply_sign(const T& x, const std::type_identity_t<T>& s
   }
 }
 
-// --- logarithm
+// --- powers of two and logarithm
+// ----------------------------------------------------------------------------------
+
+/// The largest power of two ≤ x, for positive normal x; NaN and ∞ give ∞.
+template <Real T>
+EVERT_ALWAYS_INLINE T floor_power_of_two(const T& x) {
+  if constexpr (std::same_as<T, long double>) {
+    return std::isfinite(x) ? std::scalbn(1.0L, std::ilogb(x)) : std::numeric_limits<long double>::infinity();
+  } else {
+    using Bits [[gnu::vector_size(sizeof(T))]] = detail::BitsOf<scalar_t<T>>;
+    const auto exponent_bits = std::bit_cast<Bits>(T(std::numeric_limits<scalar_t<T>>::infinity()));
+    return std::bit_cast<T>(std::bit_cast<Bits>(x) & exponent_bits);
+  }
+}
+
 // --------------------------------------------------------------------------------------------------
 
 namespace detail {
