@@ -1,26 +1,27 @@
 #pragma once
+#include "evert/core/aligned.hpp"
+#include "evert/core/index.hpp"
+#include "evert/core/petsc.hpp"
+#include "evert/mesh/mesh.hpp"
+#include "evert/mesh/partition.hpp"
+
 #include <mpi.h>
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "evert/core/aligned.hpp"
-#include "evert/core/index.hpp"
-#include "evert/core/petsc.hpp"
-#include "evert/mesh/mesh.hpp"
-
 /// A mesh spread over the ranks of a communicator: every node and every cell has one owner.
 namespace evert {
 
-/// The cells of one type and one region that a rank owns; those that touch only owned nodes come first, so that
-/// they can be computed while ghost values travel.
+/// The cells of one type and one region that a rank owns; those that touch only owned nodes come first, so
+/// that they can be computed while ghost values travel.
 struct LocalCells {
   CellType type = CellType::tet4;
-  std::int32_t region = 0;             ///< index into DistributedMesh::regions
-  std::vector<LocalIndex> nodes;       ///< local numbers, node_count(type) per cell
-  std::vector<GlobalIndex> global_ids; ///< number of each cell in the undistributed mesh (all blocks in order)
-  LocalIndex interior = 0;             ///< cells [0, interior) touch no ghost
+  std::int32_t region = 0;              ///< index into DistributedMesh::regions
+  std::vector<LocalIndex> nodes;        ///< local numbers, node_count(type) per cell
+  std::vector<GlobalIndex> global_ids;  ///< numbers in the undistributed mesh, all blocks in order
+  LocalIndex interior = 0;              ///< cells [0, interior) touch no ghost
 
   [[nodiscard]] LocalIndex size() const { return static_cast<LocalIndex>(global_ids.size()); }
 };
@@ -31,8 +32,8 @@ struct LocalNodeSet {
   std::vector<LocalIndex> owned;
 };
 
-/// One rank's part. Local node numbers: owned nodes [0, owned_nodes), then ghosts. Owned nodes are numbered for
-/// locality (reverse Cuthill-McKee). The PETSc global number of owned node i is first_owned + i.
+/// One rank's part. Local node numbers: owned nodes [0, owned_nodes), then ghosts. Owned nodes are numbered
+/// for locality (reverse Cuthill-McKee). The PETSc global number of owned node i is first_owned + i.
 struct DistributedMesh {
   MPI_Comm comm = MPI_COMM_NULL;
   GlobalIndex total_nodes = 0;
@@ -42,28 +43,29 @@ struct DistributedMesh {
   GlobalIndex first_owned = 0;
   std::vector<GlobalIndex> ghost_globals;   ///< PETSc global numbers of the ghosts
   std::vector<GlobalIndex> original_nodes;  ///< per local node: its number in the undistributed mesh
+  std::vector<GlobalIndex> natural_nodes;   ///< per owned node: the same without counting unused nodes
   std::vector<Vec3d> rest_positions;        ///< per local node [m]
   std::vector<LocalCells> cells;            ///< same list (types × regions, some empty) on every rank
   std::vector<std::string> regions;
-  std::vector<LocalNodeSet> node_sets;      ///< same names on every rank
+  std::vector<LocalNodeSet> node_sets;  ///< same names on every rank
 
   [[nodiscard]] LocalIndex local_nodes() const { return owned_nodes + ghost_nodes; }
 };
 
 struct DistributionOptions {
-  enum class Partitioner { metis, ptscotch } partitioner = Partitioner::metis;
+  Partitioner partitioner = Partitioner::metis;
 };
 
-/// Collective. Partitions `mesh` (looked at on rank 0 only) by METIS k-way on the dual graph weighted by quadrature
-/// points, and spreads it. Throws UserError on all ranks when METIS fails or ranks outnumber cells.
-[[nodiscard]] DistributedMesh distribute(MPI_Comm comm, const Mesh& mesh, const DistributionOptions& options = {});
+/// Collective. Partitions the cells of `mesh` (looked at on rank 0 only) and spreads them; nodes of no cell
+/// are dropped. A node shared by several ranks goes to the lowest or the highest of them, by the parity of
+/// the two: whole interfaces stay on one side, and the sides take turns. Throws UserError on all ranks when
+/// the partitioner fails, when ranks outnumber cells or when PETSc's integers are too short.
+[[nodiscard]] DistributedMesh distribute(MPI_Comm comm, const Mesh& mesh,
+                                         const DistributionOptions& options = {});
 
-/// Number of quadrature points, the work of a cell.
-[[nodiscard]] int quadrature_points(CellType type);
-
-/// Collective. A vector of 3 values per node with room for ghosts (VecCreateGhostBlock with block size 3). Its
-/// local array is aligned to 64 bytes and one double longer than PETSc knows, so that a 4-wide load of the last
-/// node stays inside.
+/// Collective. A vector of 3 values per node with room for ghosts (VecCreateGhostBlock with block size 3).
+/// Its local array is aligned to 64 bytes and one double longer than PETSc knows, so that a 4-wide load of
+/// the last node stays inside.
 class NodeField {
  public:
   explicit NodeField(const DistributedMesh& mesh);
@@ -72,12 +74,16 @@ class NodeField {
 
   [[nodiscard]] Vec vec() const { return vec_.get(); }
   /// Owned and ghost values, x y z per node. Writing them directly: call `touched()` afterwards.
-  [[nodiscard]] std::span<double> local() { return {array_.data(), 3 * static_cast<std::size_t>(local_nodes_)}; }
+  [[nodiscard]] std::span<double> local() {
+    return {array_.data(), 3 * static_cast<std::size_t>(local_nodes_)};
+  }
   [[nodiscard]] std::span<const double> local() const {
     return {array_.data(), 3 * static_cast<std::size_t>(local_nodes_)};
   }
   /// Owned values only.
-  [[nodiscard]] std::span<double> owned() { return local().first(3 * static_cast<std::size_t>(owned_nodes_)); }
+  [[nodiscard]] std::span<double> owned() {
+    return local().first(3 * static_cast<std::size_t>(owned_nodes_));
+  }
   [[nodiscard]] std::span<const double> owned() const {
     return local().first(3 * static_cast<std::size_t>(owned_nodes_));
   }
@@ -91,8 +97,8 @@ class NodeField {
   LocalIndex local_nodes_ = 0;
 };
 
-/// The exchange of ghost values, split so that work can be done in between. Immutable plan; all calls are collective
-/// over neighbours.
+/// The exchange of ghost values, split so that work can be done in between; results are repeatable bit by
+/// bit. All calls are collective, and only for fields of the mesh that the halo was made for.
 class Halo {
  public:
   explicit Halo(const DistributedMesh& mesh);
@@ -102,6 +108,11 @@ class Halo {
   /// ghost → owner sum; ghosts keep their stale values.
   void begin_add(NodeField& field) const;
   void end_add(NodeField& field) const;
+
+ private:
+  void check_belongs(const NodeField& field) const;
+
+  std::size_t local_values_;  // the plan itself is shared by the vectors of the fields
 };
 
 }  // namespace evert
