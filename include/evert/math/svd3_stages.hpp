@@ -161,13 +161,13 @@ EVERT_ALWAYS_INLINE Frame<T> frame_along(const Vec3<T>& direction) {
   const T reciprocal = one / (length * length_plus_z);
 
   const Vec3<T> n = (length_plus_z * reciprocal) * direction;
-  const T h = length_squared * reciprocal;  // 1 / (1 + |n_z|)
+  const T minus_h = -(length_squared * reciprocal);  // -1 / (1 + |n_z|)
   const T sign = copysign(one, direction[2]);
-  const T nx_h = n[0] * h;
-  const T nxy_h = nx_h * n[1];
+  const T x_h = minus_h * n[0];
+  const T xy_h = x_h * n[1];
   return {n,
-          {one - nx_h * n[0], -nxy_h, -(sign * n[0])},
-          {-(sign * nxy_h), sign * (one - n[1] * n[1] * h), -n[1]}};
+          {one + x_h * n[0], xy_h, -(sign * n[0])},
+          {sign * xy_h, sign * (one + minus_h * n[1] * n[1]), -n[1]}};
 }
 
 /// Stage 4: [F w, F u, F v] as columns.
