@@ -1,7 +1,6 @@
 #include "evert/contact/collisions.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "evert/math/nodal.hpp"
 
@@ -19,7 +18,7 @@ double friction_share(double coefficient, double normal_change, double speed) {
 Vec3d rub(const Vec3d& v, const Vec3d& body_velocity, const Vec3d& normal, double coefficient, double normal_change) {
   const auto relative = v - body_velocity;
   const auto tangential = relative - dot(relative, normal) * normal;
-  const double speed = std::sqrt(dot(tangential, tangential));
+  const double speed = norm(tangential);
   if (speed == 0) return v;
   return v - friction_share(coefficient, normal_change, speed) * tangential;
 }
@@ -40,13 +39,16 @@ Obstacle* Collisions::find(const std::string& name) const {
 }
 
 void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<const double> predicted,
-                         const StepInterval& step) {
+                         std::span<const NodeConstraint> prescribed, const StepInterval& step) {
   contacts_.clear();
   constraints_.clear();
   impulse_ = {};
   if (obstacles_.empty()) return;
   const auto nodes = static_cast<LocalIndex>(masses_.size());
+  auto fixed = prescribed.begin();
   for (LocalIndex node = 0; node < nodes; ++node) {
+    while (fixed != prescribed.end() && fixed->node < node) ++fixed;
+    if (fixed != prescribed.end() && fixed->node == node && fixed->free == Mat3d{}) continue;
     auto position = node_value(x, node);
     auto velocity = node_value(v, node);
     const auto first_contact = contacts_.size();
@@ -82,8 +84,7 @@ void Collisions::constrain(std::size_t first_contact, const Vec3d& v) {
   const auto count = std::min(contacts_.size() - first_contact, normals.size());
   for (std::size_t i = 0; i < count; ++i) normals[i] = contacts_[first_contact + i].normal;
   constraint.free = projector_off(std::span(normals).first(count));
-  const auto& p = constraint.free;
-  constraint.prescribed = v - (v[0] * p.column[0] + v[1] * p.column[1] + v[2] * p.column[2]);
+  constraint.prescribed = v - constraint.free * v;
   constraints_.push_back(constraint);
 }
 

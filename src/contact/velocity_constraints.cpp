@@ -1,22 +1,16 @@
 #include "evert/contact/velocity_constraints.hpp"
 
-#include <cmath>
-
 #include "evert/math/nodal.hpp"
 
 namespace evert {
 namespace {
 
-constexpr Mat3d identity{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
-
-Vec3d times(const Mat3d& m, const Vec3d& v) { return v[0] * m.column[0] + v[1] * m.column[1] + v[2] * m.column[2]; }
-
 /// The projector onto the intersection of the ranges of two projectors, from the directions both leave fixed.
 Mat3d intersect(const Mat3d& a, const Mat3d& b) {
   std::array<Vec3d, 6> fixed;
   for (std::size_t j = 0; j < 3; ++j) {
-    fixed[j] = identity.column[j] - a.column[j];
-    fixed[3 + j] = identity.column[j] - b.column[j];
+    fixed[j] = identity<double>().column[j] - a.column[j];
+    fixed[3 + j] = identity<double>().column[j] - b.column[j];
   }
   return projector_off(fixed);
 }
@@ -26,23 +20,23 @@ Mat3d intersect(const Mat3d& a, const Mat3d& b) {
 Mat3d projector_off(std::span<const Vec3d> directions) {
   // Gram-Schmidt; what is left of a direction below this length is a combination of those before it.
   constexpr double independent = 1e-6;
-  Mat3d p = identity;
+  auto p = identity<double>();
   for (const auto& direction : directions) {
-    auto left = times(p, direction);
-    const double length = std::sqrt(dot(left, left));
+    auto left = p * direction;
+    const double length = norm(left);
     if (length < independent) continue;
     left = (1 / length) * left;
-    for (std::size_t j = 0; j < 3; ++j) p.column[j] -= left[j] * left;
+    p -= outer(left, left);
   }
   return p;
 }
 
 void project(std::span<const NodeConstraint> constraints, std::span<double> values) {
-  for (const auto& c : constraints) set_node_value(values, c.node, times(c.free, node_value(values, c.node)));
+  for (const auto& c : constraints) set_node_value(values, c.node, c.free * node_value(values, c.node));
 }
 
 void impose(std::span<const NodeConstraint> constraints, std::span<double> values) {
-  for (const auto& c : constraints) set_node_value(values, c.node, times(c.free, node_value(values, c.node)) + c.prescribed);
+  for (const auto& c : constraints) set_node_value(values, c.node, c.free * node_value(values, c.node) + c.prescribed);
 }
 
 void join(std::span<const NodeConstraint> first, std::span<const NodeConstraint> second,
@@ -58,8 +52,8 @@ void join(std::span<const NodeConstraint> first, std::span<const NodeConstraint>
     } else {
       // What `second` prescribes counts only where `first` leaves the node free.
       const auto free = intersect(a->free, b->free);
-      const auto rest = times(a->free, b->prescribed);
-      joined.push_back({a->node, free, a->prescribed + rest - times(free, rest)});
+      const auto rest = a->free * b->prescribed;
+      joined.push_back({a->node, free, a->prescribed + rest - free * rest)};
       ++a, ++b;
     }
   }

@@ -24,6 +24,7 @@ void System::update_forces() {
   const auto mass = masses();
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += mass[i / 3] * gravity[i % 3];
   f.touched();
+  ++force_updates;
 }
 
 }  // namespace evert

@@ -28,8 +28,9 @@ class Collisions {
   /// Step 3 of PHYSICS 5, on the owned nodes (x y z each). `x` holds x̃ and gets xⁿ⁺¹, `v` holds vⁿ and gets ṽⁿ;
   /// `predicted` is the velocity ṽ that led to x̃. A colliding node is moved to the surface and keeps only the
   /// tangential motion that friction leaves; its velocity into the body becomes the body's.
+  /// Nodes that `prescribed` (sorted) leaves no freedom pass through.
   void resolve(std::span<double> x, std::span<double> v, std::span<const double> predicted,
-               const StepInterval& step);
+               std::span<const NodeConstraint> prescribed, const StepInterval& step);
 
   /// The normal directions of the nodes that collided in the last resolve(), sorted by node.
   [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }

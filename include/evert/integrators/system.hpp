@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct System {
   NodeField v;  ///< velocities [m/s]
   NodeField f;  ///< elastic forces and weight at x, owned nodes [N]
   double time = 0;  ///< [s]
+  std::uint64_t force_updates = 0;  ///< counts update_forces(), so that what depends on C(x) knows when it is stale
 
   /// Impulses received since the start, this rank's share [N s].
   struct Impulses {

@@ -6,17 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "evert/integrators/newmark.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
+#include "evert/sim/definition.hpp"
 
 namespace evert {
-
-/// What one step did.
-struct StepReport {
-  double dt = 0;            ///< [s]
-  int cg_iterations = 0;    ///< over the damping solves of the step
-  LocalIndex contacts = 0;  ///< colliding owned nodes on this rank
-};
 
 /// Sums over all ranks at the present state, SI units.
 struct Measurements {
@@ -24,50 +19,77 @@ struct Measurements {
   double elastic_energy = 0;
   double gravitational_energy = 0;
   Vec3d momentum{};
-  Vec3d angular_momentum{};   ///< about the origin
-  Vec3d gravity_impulse{};    ///< accumulated since the start [N s]
-  Vec3d contact_impulse{};    ///< from obstacles, normal and friction, accumulated since the start [N s]
-  Vec3d constraint_impulse{}; ///< from fixed and scripted nodes, accumulated since the start [N s]
-  GlobalIndex inverted_points = 0;  ///< quadrature points with det F < 0; a tet4 has one
+  Vec3d angular_momentum{};        ///< about the origin
+  Vec3d gravity_impulse{};         ///< accumulated since the start [N s]
+  Vec3d contact_impulse{};         ///< from obstacles, normal and friction, accumulated since the start [N s]
+  Vec3d constraint_impulse{};      ///< from fixed and scripted nodes, accumulated since the start [N s]
+  GlobalIndex inverted_points = 0; ///< quadrature points with det F < 0; a tet4 has one
 };
 
 /// A value that a checkpoint keeps besides positions and velocities; restored bit by bit.
 using StateScalar = std::pair<std::string, double>;
 
-class SimulationParts;
-
 /// Owns everything that moves; one call advances it. All calls are collective unless said otherwise.
 class Simulation {
  public:
-  explicit Simulation(std::unique_ptr<SimulationParts> parts);
-  ~Simulation();
-  Simulation(Simulation&&) noexcept;
-  Simulation& operator=(Simulation&&) noexcept;
+  Simulation(DistributedMesh mesh, SimulationDefinition definition);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by `dt` [s]. Throws SimulationError when a value is not finite or a solve does not converge.
+  /// Advances by `dt` > 0 [s]. Throws SimulationError when a value is not finite or a solve does not converge.
   StepReport step(double dt);
+  /// The same to exactly `end_time` [s], in one step.
+  StepReport step_to(double end_time);
   /// The largest step that is stable and accurate now [s]; the fixed step where the scene names one.
   [[nodiscard]] double suggested_time_step();
+  /// The time of the next event [s], or infinity. Not collective.
+  [[nodiscard]] double next_event() const;
 
   // Not collective:
-  [[nodiscard]] const DistributedMesh& mesh() const;
-  [[nodiscard]] double time() const;  ///< [s]
-  [[nodiscard]] std::int64_t steps() const;
-  [[nodiscard]] const NodeField& positions() const;   ///< [m]
-  [[nodiscard]] const NodeField& velocities() const;  ///< [m/s]
+  [[nodiscard]] const DistributedMesh& mesh() const { return mesh_; }
+  [[nodiscard]] double time() const { return system_.time; }  ///< [s]
+  [[nodiscard]] std::int64_t steps() const { return steps_; }
+  [[nodiscard]] const NodeField& positions() const { return system_.x; }   ///< [m]
+  [[nodiscard]] const NodeField& velocities() const { return system_.v; }  ///< [m/s]
+  [[nodiscard]] const ElasticForces& elastic() const { return elastic_; }
   /// Smallest signed principal stretch per owned cell, `block` counting as in DistributedMesh::cells.
   void min_stretch(std::size_t block, std::span<double> per_cell) const;
 
+  /// Sums over all ranks of energies, momenta and impulses.
   [[nodiscard]] Measurements measure() const;
+  /// Quadrature points with det F < 0, over all ranks.
+  [[nodiscard]] GlobalIndex inverted_points() const;
 
-  /// All state besides positions and velocities (time, steps, step control, impulses, events done).
+  // What events may change. Not collective; the forces follow before the next step.
+  void set_properties(std::int32_t region, const ElasticProperties& properties);
+  void set_gravity(const Vec3d& gravity);
+  /// `obstacle` must exist.
+  void set_friction(const std::string& obstacle, double coefficient);
+
+  /// All state besides positions and velocities (time, steps, step control, impulses). Impulses are summed over ranks.
   [[nodiscard]] std::vector<StateScalar> state_scalars() const;
   /// Replaces the whole state: owned positions and velocities (3 per owned node) and the scalars of state_scalars().
+  /// Events up to the restored time are applied. Throws UserError when a scalar is missing.
   void restore(std::span<const double> positions, std::span<const double> velocities,
                std::span<const StateScalar> scalars);
 
  private:
-  std::unique_ptr<SimulationParts> parts_;
+  void apply_due_events();
+  void refresh_forces();
+
+  DistributedMesh mesh_;
+  ElasticForces elastic_;
+  Collisions collisions_;
+  PrescribedMotion prescribed_;
+  System system_;
+  Newmark integrator_;
+  double fixed_time_step_;
+  TimeStepControl time_step_;
+  std::vector<TimedEvent> events_;
+  std::size_t events_done_ = 0;
+  std::int64_t steps_ = 0;
+  bool forces_stale_ = false;
+  System::Impulses impulses_before_{};  // of all ranks, before a restart
 };
 
 }  // namespace evert

@@ -1,0 +1,53 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "evert/contact/velocity_constraints.hpp"
+#include "evert/core/petsc.hpp"
+#include "evert/forces/elastic_forces.hpp"
+
+namespace evert {
+
+/// The operator of the implicit velocity solves, A = M + s P C P, as a matrix-free PETSc matrix (MATSHELL).
+/// C is the damping operator at the positions of the last force update, s = Δt/2, P the projector off the constrained
+/// velocities; P (M + s C) P + M (I − P) is the same thing since M is lumped.  PHYSICS 5
+class DampingOperator {
+ public:
+  /// Collective.
+  DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic);
+  DampingOperator(const DampingOperator&) = delete;
+  DampingOperator& operator=(const DampingOperator&) = delete;
+
+  /// Sets s [s] and the constraints, which must outlive the products.
+  void set(double factor, std::span<const NodeConstraint> constraints);
+  /// C has changed: the diagonal is out of date.
+  void invalidate() { diagonal_valid_ = false; }
+
+  /// Collective. y = A x, Vecs of 3 values per owned node.
+  void multiply(Vec x, Vec y) const;
+  /// Collective. `out` += factor · C v on owned nodes, constraints left aside.
+  void add_damping(Vec v, Vec out, double factor) const;
+  /// Collective. The inverses of A's owned 3×3 diagonal blocks, 9 numbers by columns each.
+  [[nodiscard]] std::span<const double> inverse_diagonal() const;
+
+  [[nodiscard]] double factor() const { return factor_; }
+  [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }
+  [[nodiscard]] const ElasticForces& elastic() const { return elastic_; }
+  [[nodiscard]] const DistributedMesh& mesh() const { return mesh_; }
+
+  /// The MATSHELL; PCs that need no entries (pbjacobi, jacobi, none) work on it.
+  [[nodiscard]] Mat mat() const { return mat_.get(); }
+
+ private:
+  const DistributedMesh& mesh_;
+  const ElasticForces& elastic_;
+  double factor_ = 0;
+  std::span<const NodeConstraint> constraints_;
+  mutable NodeField in_, out_;
+  mutable bool diagonal_valid_ = false;
+  mutable std::vector<double> diagonal_;          // of C
+  mutable std::vector<double> inverse_diagonal_;  // of A
+  MatHandle mat_;
+};
+
+}  // namespace evert

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "evert/integrators/damping_solver.hpp"
+#include "evert/integrators/system.hpp"
+
+namespace evert {
+
+/// What one step did.
+struct StepReport {
+  double dt = 0;            ///< [s]
+  int cg_iterations = 0;    ///< over the damping solves of the step
+  LocalIndex contacts = 0;  ///< colliding owned nodes on this rank
+};
+
+/// Newmark's scheme with elastic forces explicit and damping forces implicit; second order, variable step.
+/// paper A, section 9; PHYSICS 5
+///
+/// Largest stable step for a mode of frequency ω and damping ratio ξ: 2(√(ξ²+1)+ξ)/ω.
+class Newmark {
+ public:
+  /// Collective.
+  explicit Newmark(const System& system);
+
+  /// Collective. Advances x, v, f and the time by `dt` [s]. Throws SimulationError when a solve does not converge.
+  StepReport advance(System& system, double dt);
+
+ private:
+  int predict(System& system, double dt);
+  bool collide(System& system, double dt);
+  int correct(System& system, double dt);
+  void rub(System& system, double dt);
+  void follow_forces(const System& system);
+
+  DampingSolver solver_;
+  NodeField predicted_;  // ṽ at the middle of the step
+  VecHandle right_;
+  std::span<const NodeConstraint> prescribed_;  // at the end of the step; system.prescribed owns them
+  std::vector<NodeConstraint> constraints_;     // those and the normals of colliding nodes
+  std::uint64_t forces_seen_ = 0;
+};
+
+}  // namespace evert

@@ -1,0 +1,154 @@
+#include "evert/integrators/damping_operator.hpp"
+
+#include <algorithm>
+
+namespace evert {
+namespace {
+
+const DampingOperator& operator_of(Mat mat) {
+  const DampingOperator* self = nullptr;
+  check(MatShellGetContext(mat, static_cast<void*>(&self)));
+  return *self;
+}
+
+// Called by PETSc: no exception may pass through its C frames, so failures end here as its error codes.
+template <class Work>
+PetscErrorCode guarded(Work&& work) {
+  try {
+    work();
+    return 0;
+  } catch (const std::exception&) {
+    return PETSC_ERR_LIB;
+  }
+}
+
+PetscErrorCode shell_multiply(Mat mat, Vec x, Vec y) {
+  return guarded([&] { operator_of(mat).multiply(x, y); });
+}
+
+PetscErrorCode shell_inverse_block_diagonal(Mat mat, const PetscScalar** values) {
+  return guarded([&] { *values = operator_of(mat).inverse_diagonal().data(); });
+}
+
+PetscErrorCode shell_diagonal(Mat mat, Vec diagonal) {
+  return guarded([&] {
+    const auto& self = operator_of(mat);
+    const auto blocks = self.inverse_diagonal();
+    PetscScalar* values = nullptr;
+    check(VecGetArrayWrite(diagonal, &values));
+    for (std::size_t i = 0; i < blocks.size() / 3; ++i) values[i] = 1 / blocks[9 * (i / 3) + 4 * (i % 3)];
+    check(VecRestoreArrayWrite(diagonal, &values));
+  });
+}
+
+std::span<const double> read(Vec vec, std::size_t size) {
+  const PetscScalar* values = nullptr;
+  check(VecGetArrayRead(vec, &values));
+  return {values, size};
+}
+
+void done_reading(Vec vec, std::span<const double> values) {
+  const PetscScalar* data = values.data();
+  check(VecRestoreArrayRead(vec, &data));
+}
+
+/// The inverse of a symmetric positive definite 3×3 matrix by columns, by cofactors.
+void invert_spd(const double* a, double* inverse) {
+  const double c00 = a[4] * a[8] - a[5] * a[7];
+  const double c01 = a[5] * a[6] - a[3] * a[8];
+  const double c02 = a[3] * a[7] - a[4] * a[6];
+  const double scale = 1 / (a[0] * c00 + a[1] * c01 + a[2] * c02);
+  inverse[0] = scale * c00;
+  inverse[4] = scale * (a[0] * a[8] - a[2] * a[6]);
+  inverse[8] = scale * (a[0] * a[4] - a[1] * a[3]);
+  inverse[1] = inverse[3] = scale * c01;
+  inverse[2] = inverse[6] = scale * c02;
+  inverse[5] = inverse[7] = scale * (a[1] * a[6] - a[0] * a[7]);
+}
+
+/// B ← P B P for 3×3 matrices by columns.
+void project_block(const Mat3d& p, double* b) {
+  const Mat3d block{{{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}, {b[6], b[7], b[8]}}}};
+  const auto projected = p * block * p;
+  for (std::size_t k = 0; k < 9; ++k) b[k] = projected.column[k / 3][k % 3];
+}
+
+}  // namespace
+
+DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic)
+    : mesh_(mesh),
+      elastic_(elastic),
+      in_(mesh),
+      out_(mesh),
+      diagonal_(9 * static_cast<std::size_t>(mesh.owned_nodes)),
+      inverse_diagonal_(diagonal_.size()) {
+  const PetscInt rows = 3 * mesh.owned_nodes;
+  check(MatCreateShell(mesh.comm, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE, this, mat_.out()));
+  check(MatSetBlockSize(mat_.get(), 3));
+  check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));
+  const auto set = [&](MatOperation operation, auto function) {
+    check(MatShellSetOperation(mat_.get(), operation, reinterpret_cast<void (*)()>(function)));
+  };
+  set(MATOP_MULT, shell_multiply);
+  set(MATOP_GET_DIAGONAL, shell_diagonal);
+  set(MATOP_INVERT_BLOCK_DIAGONAL, shell_inverse_block_diagonal);
+}
+
+void DampingOperator::set(double factor, std::span<const NodeConstraint> constraints) {
+  factor_ = factor;
+  constraints_ = constraints;
+  // Tells PETSc that the preconditioner is out of date.
+  check(MatAssemblyBegin(mat_.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(mat_.get(), MAT_FINAL_ASSEMBLY));
+}
+
+void DampingOperator::multiply(Vec x, Vec y) const {
+  auto in = in_.owned();
+  auto out = out_.owned();
+  const auto values = read(x, in.size());
+  const auto mass = elastic_.masses();
+  std::copy(values.begin(), values.end(), in.begin());
+  std::fill(out.begin(), out.end(), 0.0);
+  project(constraints_, in);
+  in_.touched();
+  elastic_.add_damping(in_, out_, factor_);
+  project(constraints_, out);
+  PetscScalar* result = nullptr;
+  check(VecGetArrayWrite(y, &result));
+  for (std::size_t i = 0; i < out.size(); ++i) result[i] = mass[i / 3] * values[i] + out[i];
+  check(VecRestoreArrayWrite(y, &result));
+  done_reading(x, values);
+}
+
+void DampingOperator::add_damping(Vec v, Vec out, double factor) const {
+  auto in = in_.owned();
+  auto sum = out_.owned();
+  const auto values = read(v, in.size());
+  std::copy(values.begin(), values.end(), in.begin());
+  done_reading(v, values);
+  in_.touched();
+  std::fill(sum.begin(), sum.end(), 0.0);
+  elastic_.add_damping(in_, out_, factor);
+  PetscScalar* result = nullptr;
+  check(VecGetArray(out, &result));
+  for (std::size_t i = 0; i < sum.size(); ++i) result[i] += sum[i];
+  check(VecRestoreArray(out, &result));
+}
+
+std::span<const double> DampingOperator::inverse_diagonal() const {
+  if (!diagonal_valid_) elastic_.damping_diagonal(diagonal_);
+  diagonal_valid_ = true;
+  const auto mass = elastic_.masses();
+  std::array<double, 9> block{};
+  auto constraint = constraints_.begin();
+  for (std::size_t node = 0; node < mass.size(); ++node) {
+    for (std::size_t k = 0; k < 9; ++k) block[k] = factor_ * diagonal_[9 * node + k];
+    if (constraint != constraints_.end() && static_cast<std::size_t>(constraint->node) == node)
+      project_block((constraint++)->free, block.data());
+    for (std::size_t k = 0; k < 9; k += 4) block[k] += mass[node];
+    invert_spd(block.data(), &inverse_diagonal_[9 * node]);
+  }
+  return inverse_diagonal_;
+}
+
+}  // namespace evert

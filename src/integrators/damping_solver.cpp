@@ -1,0 +1,160 @@
+#include "evert/integrators/damping_solver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "evert/core/error.hpp"
+#include "evert/core/log.hpp"
+
+namespace evert {
+namespace {
+
+/// Owned values of a Vec, for the life of the object.
+class VecView {
+ public:
+  explicit VecView(Vec vec) : vec_(vec) {
+    PetscInt size = 0;
+    check(VecGetLocalSize(vec, &size));
+    check(VecGetArray(vec, &data_));
+    size_ = static_cast<std::size_t>(size);
+  }
+  ~VecView() { static_cast<void>(VecRestoreArray(vec_, &data_)); }
+  VecView(const VecView&) = delete;
+  VecView& operator=(const VecView&) = delete;
+  [[nodiscard]] std::span<double> values() const { return {data_, size_}; }
+
+ private:
+  Vec vec_;
+  PetscScalar* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+std::string matrix_type_option() {
+  const std::array<std::string, 4> allowed{"shell", "baij", "sbaij", "aij"};
+  std::array<char, 64> text{"shell"};
+  check(PetscOptionsGetString(nullptr, "damping_", "-mat_type", text.data(), text.size(), nullptr));
+  const std::string type = text.data();
+  if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
+    throw UserError("-damping_mat_type " + type + " is not allowed: must be " + list_of(allowed) +
+                    did_you_mean(type, allowed));
+  return type;
+}
+
+/// PCs that get by without the entries of the matrix.
+void require_entries_for(KSP ksp, const std::string& matrix_type) {
+  PC pc = nullptr;
+  const char* type = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCGetType(pc, &type));
+  const std::string name = type == nullptr ? "none" : type;
+  const std::array<std::string, 5> matrix_free{"pbjacobi", "jacobi", "none", "shell", "mat"};
+  if (matrix_type == "shell" && std::find(matrix_free.begin(), matrix_free.end(), name) == matrix_free.end())
+    throw UserError("-damping_pc_type " + name +
+                    " needs the entries of the matrix: add -damping_mat_type baij, sbaij or aij");
+}
+
+}  // namespace
+
+DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
+    : mesh_(mesh), elastic_(elastic) {
+  const NodeField like(mesh);
+  check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, residual_.out()));
+  check(VecSetBlockSize(residual_.get(), 3));
+  check(VecDuplicate(residual_.get(), projected_.out()));
+  check(VecDuplicate(residual_.get(), correction_.out()));
+  if (elastic.damped()) create_ksp();
+}
+
+void DampingSolver::create_ksp() {
+  operator_ = std::make_unique<DampingOperator>(mesh_, elastic_);
+  const auto type = matrix_type_option();
+  if (type != "shell") assembled_ = std::make_unique<AssembledDamping>(*operator_, type.c_str());
+  check(KSPCreate(mesh_.comm, ksp_.out()));
+  check(KSPSetOptionsPrefix(ksp_.get(), "damping_"));
+  check(KSPSetType(ksp_.get(), KSPCG));
+  const Mat mat = assembled_ != nullptr ? assembled_->mat() : operator_->mat();
+  check(KSPSetOperators(ksp_.get(), mat, mat));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp_.get(), &pc));
+  check(PCSetType(pc, type == "sbaij" ? PCJACOBI : PCPBJACOBI));
+  constexpr double default_rtol = 1e-6;
+  check(KSPSetTolerances(ksp_.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  check(KSPSetFromOptions(ksp_.get()));
+  require_entries_for(ksp_.get(), type);
+}
+
+void DampingSolver::invalidate() {
+  if (operator_ != nullptr) operator_->invalidate();
+}
+
+void DampingSolver::add_damping(Vec v, Vec out, double factor) const {
+  if (operator_ != nullptr) operator_->add_damping(v, out, factor);
+}
+
+/// residual_ = b − (M + s C) v.
+void DampingSolver::residual(double s, Vec b, const NodeField& v) {
+  {
+    const VecView result(residual_.get());
+    const VecView right(b);
+    const auto mass = elastic_.masses();
+    const auto velocity = v.owned();
+    for (std::size_t i = 0; i < velocity.size(); ++i)
+      result.values()[i] = right.values()[i] - mass[i / 3] * velocity[i];
+  }
+  add_damping(v.vec(), residual_.get(), -s);
+}
+
+int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints) {
+  const PhaseScope scope(Phase::damping_solve);
+  impose(constraints, v.owned());
+  v.touched();
+  residual(s, b, v);
+  check(VecCopy(residual_.get(), projected_.get()));
+  {
+    const VecView right(projected_.get());
+    project(constraints, right.values());
+  }
+  int iterations = 0;
+  if (operator_ != nullptr) {
+    operator_->set(s, constraints);
+    iterations = correct();
+  } else {
+    const VecView right(projected_.get());
+    const VecView change(correction_.get());
+    const auto mass = elastic_.masses();
+    for (std::size_t i = 0; i < right.values().size(); ++i) change.values()[i] = right.values()[i] / mass[i / 3];
+  }
+  check(VecAXPY(v.vec(), 1.0, correction_.get()));
+  return iterations;
+}
+
+/// A correction = projected residual, from zero.
+int DampingSolver::correct() {
+  if (assembled_ != nullptr) assembled_->assemble();
+  check(KSPSolve(ksp_.get(), projected_.get(), correction_.get()));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  check(KSPGetConvergedReason(ksp_.get(), &reason));
+  check(KSPGetIterationNumber(ksp_.get(), &iterations));
+  if (reason < 0)
+    throw SimulationError("the damping solve did not converge (" + std::string(KSPConvergedReasons[reason]) + " after " +
+                          std::to_string(iterations) +
+                          " iterations); a smaller integrator.time_step, another -damping_pc_type or a larger "
+                          "-damping_ksp_max_it may help");
+  return static_cast<int>(iterations);
+}
+
+std::span<const double> DampingSolver::reaction(double s) {
+  // What was left over before the correction, less what the correction brought: A δ has no mass term in constrained
+  // directions, where δ = 0.
+  check(VecScale(residual_.get(), -1.0));
+  add_damping(correction_.get(), residual_.get(), s);
+  const PetscScalar* values = nullptr;
+  check(VecGetArrayRead(residual_.get(), &values));
+  const std::span<const double> result(values, 3 * static_cast<std::size_t>(mesh_.owned_nodes));
+  check(VecRestoreArrayRead(residual_.get(), &values));
+  return result;
+}
+
+}  // namespace evert

@@ -1,0 +1,41 @@
+#include "evert/integrators/time_step.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "evert/core/error.hpp"
+
+namespace evert {
+namespace {
+
+// The bound moves with the strain, and strain by at most max_strain_increment in a step: a few steps old, it is
+// still within what `safety` covers.
+constexpr int steps_between_estimates = 4;
+
+}  // namespace
+
+double TimeStepControl::suggest(const System& system) {
+  const bool estimate = age_ == never || age_ >= steps_between_estimates;
+  // One reduction for both limits, as a minimum.
+  std::array<double, 2> limits{std::numeric_limits<double>::infinity(), stable_};
+  const double rate = system.elastic.max_strain_rate(system.x, system.v);
+  if (rate > 0) limits[0] = options_.max_strain_increment / rate;
+  if (estimate) limits[1] = system.elastic.stable_step(system.x).damped;
+  const bool finite = !std::isnan(rate) && !std::isnan(limits[1]);
+  if (!finite) limits = {-1.0, -1.0};
+  MPI_Allreduce(MPI_IN_PLACE, limits.data(), 2, MPI_DOUBLE, MPI_MIN, system.mesh.comm);
+  if (limits[0] < 0)
+    throw SimulationError("the state is no longer finite at t = " + std::to_string(system.time) +
+                          " s; a smaller integrator.time_step or integrator.safety may help");
+  stable_ = limits[1];
+  age_ = estimate ? 1 : age_ + 1;
+  return std::min(limits[0], options_.safety * stable_);
+}
+
+void TimeStepControl::restore(const State& state) {
+  stable_ = state.stable;
+  age_ = static_cast<int>(state.age);
+}
+
+}  // namespace evert
