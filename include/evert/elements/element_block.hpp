@@ -1,14 +1,15 @@
 #pragma once
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "evert/core/aligned.hpp"
 #include "evert/core/index.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/mesh.hpp"
 
-/// Rest data of all cells of one type and one material on a rank, as structure-of-arrays in batches of `lanes` cells.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Rest data of all cells of one type and one material on a rank, as structure-of-arrays in batches of
+/// `lanes` cells.
 namespace evert {
 
 /// A range of batches.
@@ -19,16 +20,30 @@ struct BatchRange {
 
 struct ElementBlock {
   CellType type = CellType::tet4;
-  int lanes = 1;                  ///< cells per batch: the width of the SIMD pack that will read them
+  int lanes = 1;  ///< cells per batch: the width of the SIMD pack that will read them
   LocalIndex cells = 0;
-  BatchRange interior;            ///< batches whose cells touch owned nodes only
-  BatchRange boundary;            ///< the others
-  AlignedVector<LocalIndex> nodes;   ///< [batch][node of the cell][lane]
-  AlignedVector<double> gradients;   ///< tet4: D_m^-1 by columns, [batch][9][lane]; else dN/dX, [batch][point][node][3][lane] [1/m]
-  AlignedVector<double> volumes;     ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
-  std::vector<LocalIndex> cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding
+  BatchRange interior;              ///< batches whose cells touch owned nodes only
+  BatchRange boundary;              ///< the others
+  AlignedVector<LocalIndex> nodes;  ///< [batch][node of the cell][lane]
+  AlignedVector<double> gradients;  ///< tet4: D_m^-1 by columns, [batch][9][lane]; else dN/dX,
+                                    ///< [batch][point][node][3][lane] [1/m]
+  AlignedVector<double> volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
+  std::vector<LocalIndex>
+      cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding
 
   [[nodiscard]] LocalIndex batches() const { return boundary.end; }
 };
+
+/// Batches the cells of `type` for packs of `lanes`. `nodes`: node_count(type) per cell; cells [0, interior)
+/// become the interior batches, the others the boundary ones, each set ordered by batch_order(). Padding
+/// lanes have zero gradients and volume and the nodes of the last cell, so that reading and adding to them is
+/// safe. Throws UserError when a cell has no positive rest volume, with count and first numbers.
+[[nodiscard]] ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes,
+                                              LocalIndex interior, std::span<const Vec3d> rest_positions,
+                                              int lanes);
+
+/// Cells with a quadrature point at which the rest volume is zero, negative or not finite; ascending.
+[[nodiscard]] std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const LocalIndex> nodes,
+                                                           std::span<const Vec3d> rest_positions);
 
 }  // namespace evert

@@ -56,8 +56,6 @@ std::vector<Vec3d> sample_stretches(double limit) {
   return samples;
 }
 
-double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
-
 template <class Model>
 class Materials : public testing::Test {};
 using Models = testing::Types<RotatedLinear, NeoHookean, StVenantKirchhoff>;

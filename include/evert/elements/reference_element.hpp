@@ -1,0 +1,92 @@
+#pragma once
+#include "evert/core/error.hpp"
+#include "evert/math/vec3.hpp"
+#include "evert/mesh/mesh.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+/// The reference elements: one aggregate each. A new element is one more aggregate and one line in
+/// with_reference_element().
+namespace evert {
+
+/// Shape functions and quadrature of one cell type on its reference cell ξ. Nodes in VTK's order.
+template <int node_total, int point_total>
+struct ReferenceElement {
+  static constexpr int nodes = node_total;
+  static constexpr int points = point_total;
+  /// F is the same everywhere in the cell: F = D_s D_m⁻¹ of edges suffices.  paper A, eq. (2)
+  static constexpr bool affine = node_total == 4;
+  /// Numbers a cell keeps of its rest shape (ElementBlock::gradients).
+  static constexpr int gradient_numbers = affine ? 9 : 3 * node_total * point_total;
+  template <class Value>
+  using PerPoint = std::array<Value, point_total>;
+  template <class Value>
+  using PerNode = std::array<Value, node_total>;
+
+  CellType type;
+  PerPoint<double> weights;            ///< W of paper A, section 4; they sum to the reference volume
+  PerPoint<PerNode<double>> values;    ///< N_a at each point
+  PerPoint<PerNode<Vec3d>> gradients;  ///< H: ∂N_a/∂ξ at each point
+};
+
+/// Linear tetrahedron: F is constant, one point at the centroid.
+inline constexpr ReferenceElement<4, 1> tet4{
+    .type = CellType::tet4,
+    .weights = {1.0 / 6},
+    .values = {{{0.25, 0.25, 0.25, 0.25}}},
+    .gradients = {{{{{{-1, -1, -1}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}}}},
+};
+
+namespace detail {
+
+/// Trilinear hexahedron on [−1, 1]³ with 2×2×2 Gauss points at ±1/√3, x fastest.
+constexpr ReferenceElement<8, 8> make_hex8() {
+  constexpr double gauss = 0.57735026918962576451;  // 1/√3
+  constexpr std::array<Vec3d, 8> corners{{{{-1, -1, -1}},
+                                          {{1, -1, -1}},
+                                          {{1, 1, -1}},
+                                          {{-1, 1, -1}},
+                                          {{-1, -1, 1}},
+                                          {{1, -1, 1}},
+                                          {{1, 1, 1}},
+                                          {{-1, 1, 1}}}};
+  ReferenceElement<8, 8> hex{.type = CellType::hex8, .weights = {}, .values = {}, .gradients = {}};
+  for (std::size_t q = 0; q < 8; ++q) {
+    const Vec3d xi{(q & 1) != 0 ? gauss : -gauss, (q & 2) != 0 ? gauss : -gauss,
+                   (q & 4) != 0 ? gauss : -gauss};
+    hex.weights[q] = 1;
+    for (std::size_t a = 0; a < 8; ++a) {
+      const Vec3d& corner = corners[a];
+      const Vec3d factor{0.5 * (1 + corner[0] * xi[0]), 0.5 * (1 + corner[1] * xi[1]),
+                         0.5 * (1 + corner[2] * xi[2])};
+      hex.values[q][a] = factor[0] * factor[1] * factor[2];
+      hex.gradients[q][a] = {0.5 * corner[0] * factor[1] * factor[2], 0.5 * corner[1] * factor[0] * factor[2],
+                             0.5 * corner[2] * factor[0] * factor[1]};
+    }
+  }
+  return hex;
+}
+
+}  // namespace detail
+
+inline constexpr ReferenceElement<8, 8> hex8 = detail::make_hex8();
+
+/// Calls `visit` with the reference element of `type`: the one place that knows which cell types carry
+/// elements. Throws UserError for the others.
+template <class Visitor>
+decltype(auto) with_reference_element(CellType type, Visitor&& visit) {
+  switch (type) {
+    case CellType::tet4:
+      return visit(tet4);
+    case CellType::hex8:
+      return visit(hex8);
+    default:
+      break;
+  }
+  throw UserError("cells of type " + std::string(name_of(type)) +
+                  " cannot be simulated yet; allowed are tet4 and hex8");
+}
+
+}  // namespace evert

@@ -1,0 +1,191 @@
+#include "evert/core/error.hpp"
+#include "evert/elements/batching.hpp"
+#include "evert/elements/element_block.hpp"
+#include "evert/elements/rest_shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+
+namespace evert {
+namespace {
+
+/// A box of unit cubes, each a hexahedron or six tetrahedra round its diagonal; interior nodes shaken a
+/// little.
+struct Box {
+  std::vector<Vec3d> positions;
+  std::vector<LocalIndex> tets;
+  std::vector<LocalIndex> hexes;
+
+  explicit Box(int n) {
+    const auto id = [n](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> shake(-0.1, 0.1);
+    for (int k = 0; k <= n; ++k) {
+      for (int j = 0; j <= n; ++j) {
+        for (int i = 0; i <= n; ++i)
+          positions.push_back({i + shake(random), j + shake(random), k + shake(random)});
+      }
+    }
+    for (int k = 0; k < n; ++k) {
+      for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+          const LocalIndex v[8] = {
+              id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
+              id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
+          hexes.insert(hexes.end(), v, v + 8);
+          for (const auto& [a, b] : {std::pair{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}}) {
+            tets.insert(tets.end(), {v[0], v[a], v[b], v[6]});
+          }
+        }
+      }
+    }
+  }
+};
+
+TEST(ElementBlock, KeepsEveryCellOnce) {
+  const Box box(3);
+  for (const int lanes : {1, 2, 4, 8}) {
+    const auto block = make_element_block(CellType::tet4, box.tets, 50, box.positions, lanes);
+    EXPECT_EQ(block.cells, 162);
+    EXPECT_EQ(block.interior.end, (50 + lanes - 1) / lanes);
+    EXPECT_EQ(block.batches() * lanes, static_cast<int>(block.cell_of_lane.size()));
+    std::set<LocalIndex> seen;
+    for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
+      const LocalIndex cell = block.cell_of_lane[slot];
+      if (cell < 0) continue;
+      EXPECT_TRUE(seen.insert(cell).second);
+      EXPECT_EQ(cell < 50, static_cast<LocalIndex>(slot) < block.interior.end * lanes);
+      for (std::size_t a = 0; a < 4; ++a) {
+        const std::size_t batch = slot / static_cast<std::size_t>(lanes);
+        const std::size_t lane = slot % static_cast<std::size_t>(lanes);
+        EXPECT_EQ(block.nodes[(batch * 4 + a) * static_cast<std::size_t>(lanes) + lane],
+                  box.tets[static_cast<std::size_t>(cell) * 4 + a]);
+      }
+    }
+    EXPECT_EQ(seen.size(), 162U);
+  }
+}
+
+TEST(ElementBlock, PaddingHasNoShapeAndTheNodesOfACell) {
+  const Box box(2);
+  for (LocalIndex cells = 1; cells <= 9; ++cells) {
+    const std::span<const LocalIndex> nodes = std::span(box.tets).first(static_cast<std::size_t>(cells) * 4);
+    const auto block = make_element_block(CellType::tet4, nodes, cells / 2, box.positions, 4);
+    for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
+      if (block.cell_of_lane[slot] >= 0) continue;
+      EXPECT_EQ(block.volumes[slot], 0);
+      for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(block.gradients[(slot / 4 * 9 + i) * 4 + slot % 4], 0);
+      for (std::size_t a = 0; a < 4; ++a) {
+        const LocalIndex node = block.nodes[(slot / 4 * 4 + a) * 4 + slot % 4];
+        EXPECT_NE(std::find(nodes.begin(), nodes.end(), node), nodes.end());
+      }
+    }
+  }
+}
+
+TEST(ElementBlock, VolumesFillTheMesh) {
+  const Box box(3);
+  double by_tets = 0;
+  for (const double v : make_element_block(CellType::tet4, box.tets, 162, box.positions, 4).volumes)
+    by_tets += v;
+  EXPECT_NEAR(by_tets, 27, 4);  // the surface is shaken
+  Box flat(3);
+  for (std::size_t i = 0; i < flat.positions.size(); ++i) {
+    flat.positions[i] = {static_cast<double>(i % 4), static_cast<double>(i / 4 % 4),
+                         static_cast<double>(i / 16)};
+  }
+  double by_hexes = 0;
+  for (const double v : make_element_block(CellType::hex8, flat.hexes, 27, flat.positions, 4).volumes)
+    by_hexes += v;
+  EXPECT_NEAR(by_hexes, 27, 1e-13);
+}
+
+/// Gradients reproduce a linear field: Σ x_a ⊗ ∂N_a/∂X = A for x = A X.
+TEST(ElementBlock, GradientsReproduceALinearField) {
+  const Box box(2);
+  const Mat3d a{{{{1.1, 0.2, -0.3}, {0.4, 0.7, 0.1}, {-0.2, 0.5, 1.3}}}};
+  const auto tets = make_element_block(CellType::tet4, box.tets, 0, box.positions, 1);
+  for (std::size_t cell = 0; cell < 48; ++cell) {
+    Mat3d edges{};
+    Mat3d inverse_rest{};
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto node = [&](std::size_t n) {
+        return box.positions[static_cast<std::size_t>(tets.nodes[cell * 4 + n])];
+      };
+      edges.column[e] = a * (node(e + 1) - node(0));
+      for (std::size_t i = 0; i < 3; ++i) inverse_rest(i, e) = tets.gradients[cell * 9 + e * 3 + i];
+    }
+    EXPECT_NEAR(norm(edges * inverse_rest - a), 0, 1e-14);
+  }
+  const auto hexes = make_element_block(CellType::hex8, box.hexes, 0, box.positions, 1);
+  for (std::size_t point = 0; point < 64; ++point) {
+    Mat3d f{};
+    for (std::size_t n = 0; n < 8; ++n) {
+      const auto node = static_cast<std::size_t>(hexes.nodes[point / 8 * 8 + n]);
+      const double* g = &hexes.gradients[(point * 8 + n) * 3];
+      f += outer(a * box.positions[node], Vec3d{g[0], g[1], g[2]});
+    }
+    EXPECT_NEAR(norm(f - a), 0, 1e-14);
+  }
+}
+
+TEST(BatchOrder, PutsStrangersIntoABatch) {
+  const Box box(8);
+  std::vector<LocalIndex> cells(box.tets.size() / 4);
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<LocalIndex>(i);
+  std::shuffle(cells.begin(), cells.end(), std::mt19937_64(5));
+  const int lanes = 4;
+  const auto order = batch_order(cells, box.tets, 4, lanes);
+  EXPECT_EQ(std::set(order.begin(), order.end()).size(), cells.size());
+  int sharing = 0;
+  for (std::size_t first = 0; first + lanes <= order.size(); first += lanes) {
+    std::set<LocalIndex> nodes;
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const auto begin = box.tets.begin() + 4 * order[first + l];
+      nodes.insert(begin, begin + 4);
+    }
+    sharing += nodes.size() < 4 * lanes;
+  }
+  // All but the tail, where the window runs dry.
+  EXPECT_LE(sharing, static_cast<int>(order.size() / lanes) / 50);
+}
+
+TEST(ElementBlock, RefusesCellsWithoutVolume) {
+  Box box(2);
+  std::swap(box.tets[4 * 7], box.tets[4 * 7 + 1]);  // inside out
+  box.tets[4 * 11 + 1] = box.tets[4 * 11];          // flat
+  try {
+    static_cast<void>(make_element_block(CellType::tet4, box.tets, 0, box.positions, 4));
+    FAIL() << "no error";
+  } catch (const UserError& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("2 of 48 tet4 cells have zero or negative rest volume (first: 7 11)"),
+        std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(cells_without_volume(CellType::tet4, box.tets, box.positions), (std::vector<LocalIndex>{7, 11}));
+}
+
+TEST(ElementBlock, RefusesAbsurdCoordinates) {
+  const Box box(1);
+  for (const double scale : {0.0, 1e-120, 1e150, std::numeric_limits<double>::quiet_NaN()}) {
+    std::vector<Vec3d> positions;
+    for (const Vec3d& x : box.positions) positions.push_back(scale * x);
+    EXPECT_EQ(cells_without_volume(CellType::tet4, box.tets, positions).size(), 6U) << scale;
+    EXPECT_EQ(cells_without_volume(CellType::hex8, box.hexes, positions).size(), 1U) << scale;
+  }
+}
+
+TEST(ElementBlock, EmptyListMakesAnEmptyBlock) {
+  const auto block = make_element_block(CellType::tet4, {}, 0, {}, 4);
+  EXPECT_EQ(block.batches(), 0);
+  EXPECT_TRUE(block.gradients.empty());
+}
+
+}  // namespace
+}  // namespace evert
