@@ -53,7 +53,7 @@ void join(std::span<const NodeConstraint> first, std::span<const NodeConstraint>
       // What `second` prescribes counts only where `first` leaves the node free.
       const auto free = intersect(a->free, b->free);
       const auto rest = a->free * b->prescribed;
-      joined.push_back({a->node, free, a->prescribed + rest - free * rest)};
+      joined.push_back({a->node, free, a->prescribed + rest - free * rest});
       ++a, ++b;
     }
   }

@@ -15,7 +15,7 @@ constexpr int steps_between_estimates = 4;
 
 }  // namespace
 
-double TimeStepControl::suggest(const System& system) {
+double TimeStepControl::suggest(System& system) {
   const bool estimate = age_ == never || age_ >= steps_between_estimates;
   // One reduction for both limits, as a minimum.
   std::array<double, 2> limits{std::numeric_limits<double>::infinity(), stable_};
