@@ -49,10 +49,6 @@ class BasicPack {
   }
   EVERT_ALWAYS_INLINE BasicPack(Scalar every_lane) : simd_(every_lane) {}
   EVERT_ALWAYS_INLINE explicit BasicPack(const Simd& simd) : simd_(simd) {}
-  template <class Number>
-  requires(std::is_arithmetic_v<Number> && !std::same_as<Number, Scalar>) EVERT_ALWAYS_INLINE
-      explicit BasicPack(Number every_lane)
-      : simd_(static_cast<Scalar>(every_lane)) {}
 
   EVERT_ALWAYS_INLINE const Simd& simd() const { return simd_; }
 
@@ -329,7 +325,7 @@ EVERT_ALWAYS_INLINE MantissaExponent<T> split_exponent(const T& x) {
       T::from_bits((bits >> Constants::mantissa_bits) | std::bit_cast<Word>(implicit_bit_value)) -
       T(implicit_bit_value);
   const auto upper = one_to_two > T(Scalar(1.41421356237309504880L));
-  return {select(upper, T(Scalar(0.5)) * one_to_two, one_to_two),
+  return {select(upper, T(0.5) * one_to_two, one_to_two),
           biased_exponent - select(upper, T(Constants::bias - 1), T(Constants::bias))};
 }
 
@@ -345,13 +341,13 @@ EVERT_ALWAYS_INLINE T log(const T& x) {
     using Scalar = scalar_t<T>;
     using Constants = detail::LogConstants<Scalar>;
     const auto [mantissa, exponent] = detail::split_exponent(x);
-    const T f = mantissa - T(Scalar(1));
-    const T s = f / (T(Scalar(2)) + f);
+    const T f = mantissa - T(1);
+    const T s = f / (T(2) + f);
     const T z = s * s;
     const T w = z * z;
     const T remainder =
         z * detail::polynomial(Constants::even, w) + w * detail::polynomial(Constants::odd, w);
-    const T half_square = T(Scalar(0.5)) * f * f;
+    const T half_square = T(0.5) * f * f;
     const T low = s * (half_square + remainder) + exponent * T(Constants::ln2_low) + (x - x);
     return exponent * T(Constants::ln2_high) - ((half_square - low) - f);
   }

@@ -35,13 +35,13 @@ struct ScaledMatrix {
 
 template <Real T>
 EVERT_ALWAYS_INLINE ScaledMatrix<T> scale_to_unit(const Mat3<T>& f) {
-  using Limits = std::numeric_limits<scalar_t<T>>;
-  T largest = T(scalar_t<T>(0));
+  constexpr scalar_t<T> smallest = std::numeric_limits<scalar_t<T>>::min();
+  T largest = T(0);
   for (const auto& column : f.column) {
     for (const T& entry : column.components) largest = max(largest, abs(entry));
   }
-  const T scale = floor_power_of_two(min(max(largest, T(Limits::min())), T(1 / Limits::min())));
-  return {f * (T(scalar_t<T>(1)) / scale), scale};
+  const T scale = floor_power_of_two(min(max(largest, T(smallest)), T(1 / smallest)));
+  return {f * (T(1) / scale), scale};
 }
 
 /// Runs the stages. Any F; NaN and ∞ give NaN.
@@ -78,7 +78,7 @@ EVERT_ALWAYS_INLINE Vec3<T> principal_stretches(const Deflation<T>& d) {
 template <Real T>
 EVERT_ALWAYS_INLINE Mat3<T> isotropic_tensor(const Frame<T>& left, const PlaneRemainder<T>& plane,
                                              const Frame<T>& right, const Vec3<T>& p) {
-  const T half = T(scalar_t<T>(0.5));
+  const T half = T(0.5);
   const T mean = half * (p[1] + p[2]), half_difference = half * (p[1] - p[2]);
   const auto rotation = unit_direction(plane.rotation);
   const auto reflection = unit_direction(plane.reflection);
@@ -127,7 +127,7 @@ EVERT_ALWAYS_INLINE Svd3<T> assemble_svd3(const Deflation<T>& d) {
   const Vec3<T> right_second = right_cosine * d.right.second - right_sine * d.right.first;
 
   // Cyclic orders (l e f) and (e f l) keep det = +1.
-  const auto is_largest = d.root > T(scalar_t<T>(0));
+  const auto is_largest = d.root > T(0);
   Svd3<T> svd;
   for (std::size_t i = 0; i < 3; ++i) {
     svd.u(i, 0) = select(is_largest, d.left.normal[i], left_first[i]);

@@ -81,24 +81,23 @@ EVERT_ALWAYS_INLINE NormalizedSquare<T> normalized_square(const Mat3<T>& f) {
   const T s01 = dot(f0, f1), s02 = dot(f0, f2), s12 = dot(f1, f2);
 
   NormalizedSquare<T> b;
-  const T scale = T(Scalar(3)) / max(s00 + s11 + s22, T(detail::tiny_square<Scalar>));
+  const T scale = T(3) / max(s00 + s11 + s22, T(detail::tiny_square<Scalar>));
   b.inverse_mean_square = scale;
-  b.b00 = s00 * scale - T(Scalar(1));
-  b.b11 = s11 * scale - T(Scalar(1));
-  b.b22 = s22 * scale - T(Scalar(1));
+  b.b00 = s00 * scale - T(1);
+  b.b11 = s11 * scale - T(1);
+  b.b22 = s22 * scale - T(1);
   b.b01 = s01 * scale;
   b.b02 = s02 * scale;
   b.b12 = s12 * scale;
 
   const T q01 = b.b01 * b.b01, q02 = b.b02 * b.b02, q12 = b.b12 * b.b12;
-  const T trace_of_square =
-      (b.b00 * b.b00 + b.b11 * b.b11) + (b.b22 * b.b22 + T(Scalar(2)) * (q01 + q02 + q12));
+  const T trace_of_square = (b.b00 * b.b00 + b.b11 * b.b11) + (b.b22 * b.b22 + T(2) * (q01 + q02 + q12));
   // A spread below ε is rounding: any direction then serves, and the floor keeps 1/spread³ finite.
   constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
   b.spread = max(trace_of_square * T(Scalar(1) / Scalar(6)), T(epsilon * epsilon * epsilon));
-  const T determinant = (b.b00 * b.b11) * b.b22 + T(Scalar(2)) * (b.b01 * b.b02) * b.b12 -
-                        (b.b00 * q12 + b.b11 * q02 + b.b22 * q01);
-  b.half_determinant = T(Scalar(0.5)) * determinant;
+  const T determinant =
+      (b.b00 * b.b11) * b.b22 + T(2) * (b.b01 * b.b02) * b.b12 - (b.b00 * q12 + b.b11 * q02 + b.b22 * q01);
+  b.half_determinant = T(0.5) * determinant;
   return b;
 }
 
@@ -117,7 +116,7 @@ EVERT_ALWAYS_INLINE T largest_cubic_root(const T& g) {
   constexpr int newton_steps = std::numeric_limits<Scalar>::digits > 53 ? 2 : 1;
   for (int step = 0; step < newton_steps; ++step) {
     const T x2 = x * x;
-    x = T(Scalar(2)) * (x2 * x + g) / (T(Scalar(3)) * x2 - T(Scalar(3)));
+    x = T(2) * (x2 * x + g) / (T(3) * x2 - T(3));
   }
   return x;
 }
@@ -125,9 +124,9 @@ EVERT_ALWAYS_INLINE T largest_cubic_root(const T& g) {
 template <Real T>
 EVERT_ALWAYS_INLINE IsolatedRoot<T> isolated_root(const NormalizedSquare<T>& b) {
   using Scalar = scalar_t<T>;
-  const T inverse_spread = T(Scalar(1)) / sqrt(b.spread);
+  const T inverse_spread = T(1) / sqrt(b.spread);
   const T cosine = b.half_determinant * (inverse_spread * inverse_spread * inverse_spread);
-  const T root = largest_cubic_root(min(abs(cosine), T(Scalar(1))));
+  const T root = largest_cubic_root(min(abs(cosine), T(1)));
   return {copysign(root, cosine), inverse_spread};
 }
 
@@ -154,7 +153,7 @@ EVERT_ALWAYS_INLINE Vec3<T> isolated_direction(const NormalizedSquare<T>& b,
 template <Real T>
 EVERT_ALWAYS_INLINE Frame<T> frame_along(const Vec3<T>& direction) {
   using Scalar = scalar_t<T>;
-  const T one = T(Scalar(1));
+  const T one = T(1);
   const T length_squared = dot(direction, direction);
   const T length = sqrt(length_squared);
   const T length_plus_z = length + abs(direction[2]);
@@ -184,7 +183,7 @@ EVERT_ALWAYS_INLINE Vec3<T> left_direction(const Mat3<T>& images, const Frame<T>
   using Scalar = scalar_t<T>;
   const auto& [fw, fu, fv] = images.column;
   const Vec3<T> plane_normal = b.inverse_mean_square * cross(fu, fv);
-  const auto is_largest = isolated.root > T(Scalar(0));
+  const auto is_largest = isolated.root > T(0);
   const auto is_null = b.inverse_mean_square >= T(Scalar(3) / detail::tiny_square<Scalar>);
   Vec3<T> l;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -201,7 +200,7 @@ EVERT_ALWAYS_INLINE PlaneRemainder<T> plane_remainder(const Mat3<T>& images, con
   const T m00 = dot(left.first, fu), m01 = dot(left.first, fv);
   const T m10 = dot(left.second, fu), m11 = dot(left.second, fv);
   const auto with_length = [](const T& x, const T& y) { return PlaneVector<T>{x, y, sqrt(x * x + y * y)}; };
-  const T half = T(Scalar(0.5));
+  const T half = T(0.5);
   return {dot(left.normal, fw), with_length(half * (m00 + m11), half * (m10 - m01)),
           with_length(half * (m00 - m11), half * (m10 + m01))};
 }
@@ -218,8 +217,8 @@ EVERT_ALWAYS_INLINE Direction2<T> unit_direction(const PlaneVector<T>& p) {
   using Scalar = scalar_t<T>;
   const T tiny = T(detail::tiny_length<Scalar>);
   const auto vanishes = p.length < tiny;
-  const T inverse = T(Scalar(1)) / max(p.length, tiny);
-  return {select(vanishes, T(Scalar(1)), p.x * inverse), select(vanishes, T(Scalar(0)), p.y * inverse)};
+  const T inverse = T(1) / max(p.length, tiny);
+  return {select(vanishes, T(1), p.x * inverse), select(vanishes, T(0), p.y * inverse)};
 }
 
 /// (cos θ/2, sin θ/2) for the angle −π ≤ θ ≤ π of a plane vector, without cancellation; (1, 0) where it has
@@ -227,14 +226,14 @@ EVERT_ALWAYS_INLINE Direction2<T> unit_direction(const PlaneVector<T>& p) {
 template <Real T>
 EVERT_ALWAYS_INLINE Direction2<T> half_angle(const PlaneVector<T>& p) {
   using Scalar = scalar_t<T>;
-  const T one = T(Scalar(1)), tiny = T(detail::tiny_length<Scalar>);
+  const T one = T(1), tiny = T(detail::tiny_length<Scalar>);
   const auto vanishes = p.length < tiny;
   const T length = max(p.length, tiny);
   const T sum = length + abs(p.x);
-  const T inverse = one / sqrt(T(Scalar(2)) * length * sum);  // 1 / |(sum, y)|
+  const T inverse = one / sqrt(T(2) * length * sum);  // 1 / |(sum, y)|
   const T larger = select(vanishes, one, sum * inverse);
-  const T smaller = select(vanishes, T(Scalar(0)), abs(p.y) * inverse);
-  const auto acute = vanishes || p.x >= T(Scalar(0));
+  const T smaller = select(vanishes, T(0), abs(p.y) * inverse);
+  const auto acute = vanishes || p.x >= T(0);
   return {select(acute, larger, smaller), copysign(select(acute, smaller, larger), p.y)};
 }
 
