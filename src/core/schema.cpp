@@ -238,7 +238,7 @@ Type<std::string> text(const std::string& what) {
 
 Type<std::vector<std::pair<std::string, std::string>>> scalars_by_name(const std::string& what) {
   using Pairs = std::vector<std::pair<std::string, std::string>>;
-  return {.info = {.name = what},
+  return {.info = {.name = what, .shape = TypeInfo::Shape::named_scalars},
           .read =
               [](const Value& value, const std::string& path) {
                 expect_map(value, path);

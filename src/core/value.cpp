@@ -100,7 +100,8 @@ std::string canonical_text(const Value& value) {
 
 void fail(const Value& value, std::string_view path, const std::string& sentence) {
   std::string message = value.where;
-  if (!path.empty()) message += (message.empty() ? "" : ": ") + std::string(path);
+  const bool said = message.ends_with(path);  // by an override, whose place is its path
+  if (!said) message += (message.empty() ? "" : ": ") + std::string(path);
   throw UserError(message + (message.empty() ? "" : ": ") + sentence);
 }
 

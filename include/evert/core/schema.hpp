@@ -57,14 +57,14 @@ struct ChoiceInfo {
 
 /// How a value is written.
 struct TypeInfo {
-  enum class Shape { simple, table, list_of_tables, named_tables };
+  enum class Shape { simple, table, list_of_tables, named_tables, named_scalars };
 
   std::string name;    ///< "number", "3 numbers", "word", "map of name: table"
   std::string unit{};  ///< "Pa"; "" when it has none, "-" for a pure number
   std::string range{};
   std::vector<ChoiceInfo> choices{};
   Shape shape = Shape::simple;
-  const TableInfo* table = nullptr;  ///< unless simple
+  const TableInfo* table = nullptr;  ///< of the tables
 };
 
 struct KeyInfo {
@@ -234,6 +234,13 @@ class Table {
     if constexpr (std::is_convertible_v<decltype(std::invoke(member, defaults)), const T&>)
       default_text = type.write(std::invoke(member, defaults));
     return add({name, type.info, false, default_text, example, help}, member, type);
+  }
+
+  /// One of several ways to say the same: it has no default, and a then() sees to it that one way is taken.
+  template <class Member, class T>
+  Table& either(const std::string& name, Member member, const Type<T>& type, const std::string& example,
+                const std::string& help) {
+    return add({name, type.info, false, "", example, help}, member, type);
   }
 
   /// Names the key whose value chooses among the alternatives that follow.

@@ -12,11 +12,11 @@ struct Value {
   enum class Kind { null, scalar, list, map };
 
   Kind kind = Kind::null;
-  std::string where;    ///< "scene.yaml:12", or the override it came from
-  std::string text;     ///< of a scalar
+  std::string where{};  ///< "scene.yaml:12", or the override it came from
+  std::string text{};   ///< of a scalar
   bool quoted = false;  ///< a quoted scalar is text, never a number or a word of ours
-  std::vector<Value> items;
-  std::vector<std::pair<std::string, Value>> entries;  ///< of a map, in order; keys differ
+  std::vector<Value> items{};
+  std::vector<std::pair<std::string, Value>> entries{};  ///< of a map, in order; keys differ
 
   /// The value of `key`, or nullptr when there is none or this is no map.
   [[nodiscard]] const Value* find(std::string_view key) const;

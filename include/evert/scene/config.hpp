@@ -29,8 +29,9 @@ struct FileMesh {
 enum class BoxCell { hex8, tet5, tet6, bcc };
 
 struct BoxMesh {
-  Vec3d min{};  ///< [m]
-  Vec3d max{};  ///< [m]
+  Vec3d size{};  ///< [m] max − min
+  Vec3d min{};   ///< [m]
+  Vec3d max{};   ///< [m]
   BoxCell cell = BoxCell::tet6;
   std::array<int, 3> cells{};  ///< along x, y, z; all 0 when edge_length is given
   double edge_length = 0;      ///< [m]; 0 when cells are given
@@ -74,15 +75,15 @@ struct TransformConfig {
   Vec3d translate{};  ///< [m]
 };
 
-enum class StartKind { scramble, flatten_plane, flatten_line, flatten_point, inside_out };
+enum class StartKind { none, scramble, flatten_plane, flatten_line, flatten_point, inside_out };
 
 /// Where the nodes start: (1 − amplitude)·rest + amplitude·target, target being a random point of the
 /// bounding box (scramble), the projection onto a plane, line or point through the centre of the bounding
 /// box, or the point mirrored at that plane (inside_out).
 struct StartConfig {
-  StartKind kind = StartKind::scramble;
-  double amplitude = 1;    ///< [-] in (0, 1]
-  Vec3d axis{{0, 1, 0}};   ///< unit vector: normal of the plane, direction of the line
+  StartKind kind = StartKind::scramble;  ///< never none: then the whole optional is empty
+  double amplitude = 1;                  ///< [-] in (0, 1]
+  Vec3d axis{{0, 1, 0}};                 ///< unit vector: normal of the plane, direction of the line
   std::uint64_t seed = 1;  ///< of scramble; the target of a node depends on the seed and its number only
 };
 
@@ -131,6 +132,7 @@ struct BodyConfig {
 struct HalfSpaceConfig {
   Vec3d normal{{0, 1, 0}};  ///< unit vector, out of the solid
   Vec3d point{};            ///< [m] a point of the plane at t = 0
+  double offset = 0;        ///< [m] normal · point
 };
 
 struct SphereConfig {
@@ -227,6 +229,7 @@ struct CheckpointConfig {
 };
 
 struct SceneConfig {
+  int schema_version = 1;
   std::string name;
   double end_time = 0;  ///< [s]
   OutputConfig output;

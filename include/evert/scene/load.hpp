@@ -1,18 +1,19 @@
 #pragma once
+#include "evert/scene/config.hpp"
+
 #include <mpi.h>
 
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "evert/scene/config.hpp"
-
 /// From the text of a scene to its values.
 namespace evert {
 
-/// Collective. Rank 0 reads the file, every rank parses the same text, so that every rank has the same scene or
-/// throws the same error. `overrides` are "path=value", the value written as in the scene; they are applied in order
-/// before anything is checked. Throws UserError: one sentence with file:line (or the override) and key path.
+/// Collective. Rank 0 reads the file, every rank parses the same text, so that every rank has the same scene
+/// or throws the same error. `overrides` are "path=value", the value written as in the scene; they are
+/// applied in order before anything is checked. Throws UserError: one sentence with file:line (or the
+/// override) and key path.
 [[nodiscard]] SceneConfig load_scene(MPI_Comm comm, const std::string& path,
                                      std::span<const std::string> overrides = {});
 

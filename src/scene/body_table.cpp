@@ -1,0 +1,161 @@
+#include "tables.hpp"
+
+/// Bodies: mesh, placement, material, damping, start.
+namespace evert {
+
+using namespace schema;
+
+namespace {
+
+const Table<RotationConfig>& rotation_table() {
+  static const auto table =
+      Table<RotationConfig>("A rotation about an axis through the origin, by the right-hand rule.")
+          .required("axis", &RotationConfig::axis, direction(), "[1, 0, 0]", "Direction of the axis.")
+          .required("angle", &RotationConfig::angle, number("degrees"), "90", "Angle of the rotation.");
+  return table;
+}
+
+const Table<TransformConfig>& transform_table() {
+  static const auto table =
+      Table<TransformConfig>(
+          "Makes the rest shape from the mesh and places it: fit, then scale, then rotate, then translate.")
+          .optional("fit", &TransformConfig::fit, number("m", above(0)), "1",
+                    "First centre the bounding box at the origin and make its longest side this long.")
+          .optional("scale", &TransformConfig::scale, number("-", above(0)), "0.001",
+                    "Then scale about the origin, e.g. a mesh in millimetres by 0.001.")
+          .optional("rotate", &TransformConfig::rotate, table_of(rotation_table()),
+                    "{axis: [1, 0, 0], angle: 90}", "Then rotate about the origin.")
+          .optional("translate", &TransformConfig::translate, vector3("m"), "[0, 1, 0]", "Then translate.");
+  return table;
+}
+
+const Table<StartConfig>& start_table() {
+  static const auto table =
+      Table<StartConfig>(
+          "Where the nodes start instead of at rest: (1 - amplitude) of their place at rest plus "
+          "amplitude of a target.")
+          .required("kind", &StartConfig::kind,
+                    one_of<StartKind>(
+                        {{"none", StartKind::none, "at rest, as without 'start'"},
+                         {"scramble", StartKind::scramble, "target: a random point of the bounding box"},
+                         {"flatten_plane", StartKind::flatten_plane,
+                          "target: the plane through the centre, normal to axis"},
+                         {"flatten_line", StartKind::flatten_line,
+                          "target: the line through the centre along axis"},
+                         {"flatten_point", StartKind::flatten_point, "target: the centre"},
+                         {"inside_out", StartKind::inside_out,
+                          "target: the mirror image at the plane normal to axis"}}),
+                    "scramble", "The target.")
+          .optional("amplitude", &StartConfig::amplitude, number("-", above_up_to(0, 1)), "0.5",
+                    "How far towards the target.")
+          .optional("axis", &StartConfig::axis, direction(), "[0, 1, 0]",
+                    "Normal of the plane or direction of the line.")
+          .optional("seed", &StartConfig::seed, seed_number(), "7", "Of the random points of scramble.");
+  return table;
+}
+
+void check_material(const MaterialConfig& material, const Value& map, const std::string& path) {
+  if (material.model != MaterialModel::rotated_linear) return;
+  for (const auto* key : {"compression_limit", "extension"})
+    if (const auto* value = map.find(key))
+      fail(*value, join(path, key), "does not go with 'model: rotated_linear', which needs no extension");
+}
+
+void check_damping(const DampingConfig& damping, const Value& map, const std::string& path) {
+  const bool by_coefficients = map.find("alpha") != nullptr || map.find("beta") != nullptr;
+  if (damping.model != DampingModel::none && damping.stiffness_proportional.has_value() == by_coefficients)
+    fail(map, path, "needs either 'stiffness_proportional' [s] or 'alpha' and 'beta' [Pa s]");
+}
+
+/// What the scene switches off by "none" is not there. (A group keeps it: it differs from a damped body.)
+void drop_what_is_none(BodyConfig& body, const Value& /*map*/, const std::string& /*path*/) {
+  if (body.damping && body.damping->model == DampingModel::none) body.damping.reset();
+  if (body.start && body.start->kind == StartKind::none) body.start.reset();
+}
+
+const Table<GroupConfig>& group_table() {
+  static const auto table =
+      Table<GroupConfig>("A named volume group of the mesh; what it does not say is as in the body.")
+          .optional("density", &GroupConfig::density, number("kg/m^3", above(0)), "1200", "Mass per volume.")
+          .optional("material", &GroupConfig::material, table_of(material_table()),
+                    "{model: neo_hookean, youngs_modulus: 1e6, poissons_ratio: 0.4}", "Elastic model.")
+          .optional("damping", &GroupConfig::damping, table_of(damping_table()),
+                    "{model: rotated, stiffness_proportional: 0.01}",
+                    "Damping; {model: none} for a group without.");
+  return table;
+}
+
+}  // namespace
+
+const Table<MaterialConfig>& material_table() {
+  static const auto table =
+      Table<MaterialConfig>("An isotropic elastic model.")
+          .required(
+              "model", &MaterialConfig::model,
+              one_of<MaterialModel>(
+                  {{"neo_hookean", MaterialModel::neo_hookean, "stiffens under compression; large strains"},
+                   {"rotated_linear", MaterialModel::rotated_linear, "linear in the stretches; fast, robust"},
+                   {"st_venant_kirchhoff", MaterialModel::st_venant_kirchhoff,
+                    "linear in Green's strain; softens under compression"}}),
+              "neo_hookean", "How stress follows from strain.")
+          .required("youngs_modulus", &MaterialConfig::youngs_modulus, number("Pa", at_least(0)), "1e5",
+                    "Stiffness. 0 is a body without elastic forces.")
+          .required("poissons_ratio", &MaterialConfig::poissons_ratio, number("-", between(-1, 0.5)), "0.45",
+                    "Lateral contraction over extension; towards 0.5 the volume is kept.")
+          .optional("compression_limit", &MaterialConfig::compression_limit, number("-", between(0, 1)),
+                    "0.3",
+                    "Principal stretch below which the model is extended through flat and inverted states; "
+                    "without it "
+                    "0.3 for neo_hookean, 0.58 for st_venant_kirchhoff.")
+          .optional("extension", &MaterialConfig::extension,
+                    one_of<Extension>(
+                        {{"linear", Extension::linear, "the energy is continued: exact gradient, uninverts"},
+                         {"clamp", Extension::clamp, "stress at the limit: for comparison"}}),
+                    "linear", "How the model continues below compression_limit.")
+          .then(check_material);
+  return table;
+}
+
+const Table<DampingConfig>& damping_table() {
+  static const auto table =
+      Table<DampingConfig>("Viscous damping of the rate of strain, taken implicitly.")
+          .required("model", &DampingConfig::model,
+                    one_of<DampingModel>(
+                        {{"rotated", DampingModel::rotated, "robust when flat"},
+                         {"objective", DampingModel::objective, "keeps angular momentum; vanishes when flat"},
+                         {"none", DampingModel::none, "as without 'damping'"}}),
+                    "rotated", "How the damping stress follows from the rate of strain.")
+          .either("stiffness_proportional", &DampingConfig::stiffness_proportional, number("s", at_least(0)),
+                  "0.01", "Time R: alpha = R lambda and beta = R mu, with the Lame parameters of the moment.")
+          .either("alpha", &DampingConfig::alpha, number("Pa s", at_least(0)), "100",
+                  "Volumetric coefficient.")
+          .either("beta", &DampingConfig::beta, number("Pa s", at_least(0)), "50", "Shear coefficient.")
+          .then(check_damping);
+  return table;
+}
+
+const Table<BodyConfig>& body_table() {
+  static const auto table =
+      Table<BodyConfig>("A deformable body.")
+          .required("mesh", &BodyConfig::mesh, table_of(mesh_table()),
+                    "{generate: ball, radius: 0.5, edge_length: 0.1}", "Its rest shape.")
+          .optional("transform", &BodyConfig::transform, table_of(transform_table()),
+                    "{translate: [0, 1, 0]}", "Size and place of the rest shape.")
+          .required("density", &BodyConfig::density, number("kg/m^3", above(0)), "1000",
+                    "Mass per volume at rest.")
+          .optional("velocity", &BodyConfig::velocity, vector3("m/s"), "[0, -2, 0]", "At the start.")
+          .optional("spin", &BodyConfig::spin, vector3("rad/s"), "[0.5, 0.25, 0]",
+                    "Angular velocity at the start, about the centre of mass.")
+          .optional("start", &BodyConfig::start, table_of(start_table()), "{kind: flatten_plane}",
+                    "Start away from the rest shape.")
+          .required("material", &BodyConfig::material, table_of(material_table()),
+                    "{model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.45}", "Elastic model.")
+          .optional("damping", &BodyConfig::damping, table_of(damping_table()),
+                    "{model: rotated, stiffness_proportional: 0.001}", "Without it the body is not damped.")
+          .optional("groups", &BodyConfig::groups, named(group_table()), "{tendon: {density: 1200}}",
+                    "Volume groups of the mesh that differ from the body, by name.")
+          .then(drop_what_is_none);
+  return table;
+}
+
+}  // namespace evert

@@ -1,0 +1,105 @@
+#include "evert/scene/load.hpp"
+
+#include "evert/core/collective.hpp"
+#include "evert/core/error.hpp"
+
+#include "events.hpp"
+#include "overrides.hpp"
+#include "tables.hpp"
+#include "yaml.hpp"
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace evert {
+namespace {
+
+using schema::Value;
+
+constexpr std::uintmax_t largest_file = 16U
+                                        << 20U;  // a scene is written by a person, or by a person's script
+
+std::string read_file(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw UserError(path + ": there is no such file");
+  if (std::filesystem::is_directory(status)) throw UserError(path + ": is a directory, not a scene file");
+  if (!std::filesystem::is_regular_file(status)) throw UserError(path + ": is not a regular file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw UserError(path + ": cannot be opened for reading");
+  std::string text;
+  std::array<char, 65536> buffer{};
+  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
+    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > largest_file) throw UserError(path + ": larger than 16 MiB: not a scene");
+  }
+  if (file.bad()) throw UserError(path + ": cannot be read");
+  return text;
+}
+
+/// Rank 0's text on every rank.
+void broadcast(MPI_Comm comm, std::string& text) {
+  auto length = static_cast<int>(text.size());  // at most largest_file
+  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
+}
+
+/// Mesh files are named relative to the scene, those on the command line relative to the working directory.
+void resolve_mesh_paths(SceneConfig& scene, const Value& root) {
+  const auto folder = std::filesystem::path(scene.file).parent_path();
+  for (auto& body : scene.bodies) {
+    auto* mesh = std::get_if<FileMesh>(&body.mesh);
+    if (mesh == nullptr) continue;
+    const auto& written = *root.find("bodies")->find(body.name)->find("mesh")->find("file");
+    if (!written.where.starts_with("-set ")) mesh->path = (folder / mesh->path).lexically_normal().string();
+  }
+}
+
+void resolve_constraints(SceneConfig& scene, const Value& root) {
+  std::vector<std::string> names;
+  for (const auto& body : scene.bodies) names.push_back(body.name);
+  for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
+    auto& constraint = scene.constraints[i];
+    const auto found = std::find(names.begin(), names.end(), constraint.body);
+    if (found == names.end())
+      schema::fail(*root.find("constraints")->items[i].find("body"),
+                   "constraints[" + std::to_string(i) + "].body",
+                   "there is no body " + schema::shown(constraint.body) + ": must be " + list_of(names) +
+                       did_you_mean(constraint.body, names));
+    constraint.body_index = static_cast<std::size_t>(found - names.begin());
+  }
+}
+
+/// The keys that a checkpoint depends on.
+std::string identity_of(const Value& root) {
+  Value kept{.kind = Value::Kind::map};
+  for (const auto* key : {"name", "gravity", "bodies", "obstacles", "constraints", "events"})
+    if (const auto* value = root.find(key)) kept.set(key, *value);
+  return canonical_text(kept);
+}
+
+}  // namespace
+
+SceneConfig parse_scene(std::string_view text, const std::string& file,
+                        std::span<const std::string> overrides) {
+  auto root = parse_yaml(text, file);
+  apply_overrides(root, scene_table().info(), overrides);
+  auto scene = scene_table().read(root, "");
+  scene.file = file;
+  resolve_mesh_paths(scene, root);
+  resolve_constraints(scene, root);
+  resolve_events(scene, root);
+  scene.text = canonical_text(root);
+  scene.identity = identity_of(root);
+  return scene;
+}
+
+SceneConfig load_scene(MPI_Comm comm, const std::string& path, std::span<const std::string> overrides) {
+  std::string text;
+  on_root(comm, [&] { text = read_file(path); });
+  broadcast(comm, text);
+  return parse_scene(text, path, overrides);
+}
+
+}  // namespace evert

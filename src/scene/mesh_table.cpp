@@ -1,0 +1,152 @@
+#include "tables.hpp"
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+/// The meshes that a body can have: a file, or one of the generators.
+namespace evert {
+
+using namespace schema;
+
+namespace {
+
+constexpr double most_cells = 1e9;
+
+/// Throws when a volume [m^3] filled with cells of an edge length would not fit into memory by far.
+void expect_possible(double volume, double edge_length, const Value& map, const std::string& path) {
+  const double cells = 6 * std::numbers::sqrt2 * volume / (edge_length * edge_length * edge_length);
+  if (cells <= most_cells) return;
+  const auto* value = map.find("edge_length");
+  fail(*value, join(path, "edge_length"),
+       shown(*value) + " is too short for this size: it makes more than 1e9 cells");
+}
+
+Type<double> length() { return number("m", above(0)); }
+
+const Table<FileMesh>& file_mesh() {
+  static const auto table =
+      Table<FileMesh>("A mesh file.")
+          .required("file", &FileMesh::path, text("path"), "armadillo.msh",
+                    "Gmsh 2.2 or 4.1 (.msh), Medit (.mesh), legacy VTK (.vtk), VTU (.vtu) or TetGen (.node "
+                    "beside .ele). "
+                    "Relative to the scene file; in -set, to the working directory.")
+          .optional("groups", &FileMesh::groups, sequence_of(text("name")), "[muscle, tendon]",
+                    "Named volume groups to keep; without it, all cells.");
+  return table;
+}
+
+void finish_box(BoxMesh& box, const Value& map, const std::string& path) {
+  const bool by_size = map.find("size") != nullptr;
+  const bool by_corners = map.find("min") != nullptr && map.find("max") != nullptr;
+  if (by_size == by_corners || (by_size && (map.find("min") != nullptr || map.find("max") != nullptr)))
+    fail(map, path, "needs either 'size' (centred at the origin) or both 'min' and 'max'");
+  if (by_size) {
+    box.max = 0.5 * box.size;
+    box.min = -box.max;
+  }
+  box.size = box.max - box.min;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(box.size[i] > 0))
+      fail(map, join(path, "max"), "must exceed min, but does not along " + std::string(1, "xyz"[i]));
+  if ((map.find("cells") != nullptr) == (map.find("edge_length") != nullptr))
+    fail(map, path, "needs either 'cells' or 'edge_length'");
+  if (map.find("edge_length") != nullptr)
+    expect_possible(box.size[0] * box.size[1] * box.size[2], box.edge_length, map, path);
+  else if (static_cast<double>(box.cells[0]) * box.cells[1] * box.cells[2] > most_cells)
+    fail(*map.find("cells"), join(path, "cells"), "are too many: at most 1e9 in all");
+}
+
+const Table<BoxMesh>& box_mesh() {
+  static const auto table =
+      Table<BoxMesh>("A box. Its faces are the node sets x_min, x_max, y_min, y_max, z_min and z_max.")
+          .either("size", &BoxMesh::size, vector3("m", above(0)), "[1, 0.5, 0.5]",
+                  "Lengths of the edges; the box is centred at the origin.")
+          .either("min", &BoxMesh::min, vector3("m"), "[0, 0, 0]", "Lowest corner; with max instead of size.")
+          .either("max", &BoxMesh::max, vector3("m"), "[1, 0.5, 0.5]",
+                  "Highest corner; with min instead of size.")
+          .either("cells", &BoxMesh::cells, array_of<3>(integer(1, 1'000'000), "whole numbers"),
+                  "[20, 10, 10]", "Cubes along x, y and z, each cut into cells; instead of edge_length.")
+          .either("edge_length", &BoxMesh::edge_length, length(), "0.05",
+                  "Edge of the cubes, about; instead of cells.")
+          .optional("cell", &BoxMesh::cell,
+                    one_of<BoxCell>({{"hex8", BoxCell::hex8, "hexahedra"},
+                                     {"tet5", BoxCell::tet5, "5 tetrahedra a cube"},
+                                     {"tet6", BoxCell::tet6, "6 tetrahedra a cube"},
+                                     {"bcc", BoxCell::bcc, "tetrahedra of the body-centred cubic lattice"}}),
+                    "tet6", "What the cubes are cut into.")
+          .then(finish_box);
+  return table;
+}
+
+const Table<BallMesh>& ball_mesh() {
+  static const auto table =
+      Table<BallMesh>("A ball.")
+          .required("radius", &BallMesh::radius, length(), "0.5", "Its radius.")
+          .required("edge_length", &BallMesh::edge_length, length(), "0.05", "Edge of the tetrahedra, about.")
+          .then([](BallMesh& ball, const Value& map, const std::string& path) {
+            expect_possible(4.19 * std::pow(ball.radius, 3), ball.edge_length, map, path);
+          });
+  return table;
+}
+
+const Table<TorusMesh>& torus_mesh() {
+  static const auto table = Table<TorusMesh>("A torus around the y axis.")
+                                .required("major_radius", &TorusMesh::major_radius, length(), "0.5",
+                                          "From the axis to the middle of the tube.")
+                                .required("minor_radius", &TorusMesh::minor_radius, length(), "0.2",
+                                          "Of the tube; less than major_radius.")
+                                .required("edge_length", &TorusMesh::edge_length, length(), "0.03",
+                                          "Edge of the tetrahedra, about.")
+                                .then([](TorusMesh& torus, const Value& map, const std::string& path) {
+                                  const auto* minor = map.find("minor_radius");
+                                  if (!(torus.minor_radius < torus.major_radius))
+                                    fail(*minor, join(path, "minor_radius"),
+                                         shown(*minor) + " is not allowed: must be less than major_radius");
+                                  expect_possible(19.8 * torus.major_radius * std::pow(torus.minor_radius, 2),
+                                                  torus.edge_length, map, path);
+                                });
+  return table;
+}
+
+const Table<CylinderMesh>& cylinder_mesh() {
+  static const auto table = Table<CylinderMesh>("A cylinder around the y axis.")
+                                .required("radius", &CylinderMesh::radius, length(), "0.2", "Its radius.")
+                                .required("length", &CylinderMesh::length, length(), "1", "Along the y axis.")
+                                .required("edge_length", &CylinderMesh::edge_length, length(), "0.05",
+                                          "Edge of the tetrahedra, about.")
+                                .then([](CylinderMesh& cylinder, const Value& map, const std::string& path) {
+                                  expect_possible(3.15 * std::pow(cylinder.radius, 2) * cylinder.length,
+                                                  cylinder.edge_length, map, path);
+                                });
+  return table;
+}
+
+const Table<EllipsoidMesh>& ellipsoid_mesh() {
+  static const auto table =
+      Table<EllipsoidMesh>("An ellipsoid.")
+          .required("radii", &EllipsoidMesh::radii, vector3("m", above(0)), "[0.5, 0.3, 0.3]",
+                    "Along x, y and z.")
+          .required("edge_length", &EllipsoidMesh::edge_length, length(), "0.05",
+                    "Edge of the tetrahedra, about.")
+          .then([](EllipsoidMesh& ellipsoid, const Value& map, const std::string& path) {
+            const auto& r = ellipsoid.radii;
+            expect_possible(4.19 * r[0] * r[1] * r[2], ellipsoid.edge_length, map, path);
+          });
+  return table;
+}
+
+}  // namespace
+
+const Table<MeshConfig>& mesh_table() {
+  static const auto table = Table<MeshConfig>("A mesh: read from a file or generated, centred at the origin.")
+                                .chosen_by("generate", "The shape to generate.")
+                                .alternative_by_key("file", std::identity{}, file_mesh())
+                                .alternative("box", std::identity{}, box_mesh())
+                                .alternative("ball", std::identity{}, ball_mesh())
+                                .alternative("torus", std::identity{}, torus_mesh())
+                                .alternative("cylinder", std::identity{}, cylinder_mesh())
+                                .alternative("ellipsoid", std::identity{}, ellipsoid_mesh());
+  return table;
+}
+
+}  // namespace evert

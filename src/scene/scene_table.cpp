@@ -1,0 +1,108 @@
+#include "tables.hpp"
+
+/// The keys at the top of a scene, and those of the run.
+namespace evert {
+
+using namespace schema;
+
+namespace {
+
+const Table<OutputConfig>& output_table() {
+  static const auto table =
+      Table<OutputConfig>("What is written, and how often.")
+          .optional(
+              "directory", &OutputConfig::directory, text("path"), "runs/torus",
+              "Made when it does not exist; runs/<name> unless given. Relative to the working directory.")
+          .optional("frames_per_second", &OutputConfig::frames_per_second, number("1/s", above(0)), "30",
+                    "Frames per simulated second; without it no frames are written.")
+          .optional("fields", &OutputConfig::fields,
+                    sequence_of(one_of<OutputField>(
+                        {{"velocity", OutputField::velocity, "per node [m/s]"},
+                         {"min_stretch", OutputField::min_stretch,
+                          "per cell, smallest signed principal stretch [-]"},
+                         {"inversion", OutputField::inversion, "per cell, 1 where inverted"},
+                         {"rank", OutputField::rank, "per cell, the MPI rank that computes it"}})),
+                    "[velocity, inversion]", "Written besides the positions.")
+          .optional("energy_log", &OutputConfig::energy_log, number("s", at_least(0)), "0.01",
+                    "Simulated time between rows of energies and momenta in a CSV file, 0 for every step; "
+                    "without it, no file.");
+  return table;
+}
+
+const Table<IntegratorConfig>& integrator_table() {
+  static const auto table =
+      Table<IntegratorConfig>("How time advances.")
+          .optional("method", &IntegratorConfig::method,
+                    one_of<IntegrationMethod>({{"newmark", IntegrationMethod::newmark,
+                                                "elastic forces explicit, damping implicit, second order"}}),
+                    "newmark", "Time stepping.")
+          .optional("time_step", &IntegratorConfig::time_step, word_or_number("auto", "s", above(0)), "1e-4",
+                    "auto: the largest stable and accurate step, found anew as the state changes.")
+          .optional("safety", &IntegratorConfig::safety, number("-", above_up_to(0, 1)), "0.5",
+                    "With auto: fraction of the stable step.")
+          .optional("max_strain_increment", &IntegratorConfig::max_strain_increment, number("-", above(0)),
+                    "0.05", "With auto: largest change of strain of an element in one step.");
+  return table;
+}
+
+const Table<CheckpointConfig>& checkpoint_table() {
+  static const auto table =
+      Table<CheckpointConfig>("When the state is saved to restart from.")
+          .optional("every_simulated", &CheckpointConfig::every_simulated, number("s", above(0)), "0.5",
+                    "Simulated time between checkpoints.")
+          .optional("every_wall", &CheckpointConfig::every_wall, number("s", above(0)), "600",
+                    "Wall time between checkpoints.")
+          .then([](CheckpointConfig& checkpoint, const Value& map, const std::string& path) {
+            if (!checkpoint.every_simulated && !checkpoint.every_wall)
+              fail(map, path, "needs 'every_simulated' [s], 'every_wall' [s] or both");
+          });
+  return table;
+}
+
+/// runs/<name>, with whatever would be awkward in a path replaced.
+std::string default_directory(std::string name) {
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (!plain) c = '_';
+  }
+  return "runs/" + name;
+}
+
+}  // namespace
+
+const Table<SceneConfig>& scene_table() {
+  static const auto table =
+      Table<SceneConfig>(
+          "A scene. SI units everywhere; a feature that is not named is not there and costs nothing.")
+          .optional("schema_version", &SceneConfig::schema_version, integer(1, 1), "1",
+                    "Version of this format, for scenes that must say it.")
+          .required("name", &SceneConfig::name, text("name"), "torus puddle", "Name of the scene.")
+          .required("end_time", &SceneConfig::end_time, number("s", above(0)), "2", "Simulated time.")
+          .optional("output", &SceneConfig::output, table_of(output_table()), "{frames_per_second: 30}",
+                    "What is written.")
+          .optional("gravity", &SceneConfig::gravity, gravity_type(), "[0, -9.81, 0]",
+                    "Acceleration of all bodies.")
+          .required("bodies", &SceneConfig::bodies, named(body_table()),
+                    "{ball: {mesh: ..., density: 1000, material: ...}}", "The deformable bodies, by name.")
+          .optional("obstacles", &SceneConfig::obstacles, named(obstacle_table()),
+                    "{ground: {shape: half_space, friction: 0.4}}", "The rigid obstacles, by name.")
+          .optional("constraints", &SceneConfig::constraints, sequence_of(table_of(constraint_table())),
+                    "[{body: beam, node_set: x_min, fixed: true}]", "Nodes that are held or moved.")
+          .optional("events", &SceneConfig::events, sequence_of(table_of(event_table())),
+                    "[{at: 0.5, set: gravity, to: [0, 0, 0]}]", "Values that change at a time.")
+          .optional("integrator", &SceneConfig::integrator, table_of(integrator_table()), "{time_step: auto}",
+                    "How time advances.")
+          .optional("checkpoint", &SceneConfig::checkpoint, table_of(checkpoint_table()), "{every_wall: 600}",
+                    "Without it, no checkpoints.")
+          .optional("petsc", &SceneConfig::petsc, scalars_by_name("option: value"),
+                    "{damping_ksp_rtol: 1e-6}",
+                    "PETSc options, without their dash; the command line overrides them.")
+          .then([](SceneConfig& scene, const Value& map, const std::string& path) {
+            if (scene.output.directory.empty()) scene.output.directory = default_directory(scene.name);
+            if (scene.bodies.empty())
+              fail(*map.find("bodies"), join(path, "bodies"), "must name at least one body");
+          });
+  return table;
+}
+
+}  // namespace evert
