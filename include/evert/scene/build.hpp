@@ -1,10 +1,10 @@
 #pragma once
+#include "evert/scene/config.hpp"
+#include "evert/sim/simulation.hpp"
+
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "evert/scene/config.hpp"
-#include "evert/sim/simulation.hpp"
 
 /// From the values of a scene to the objects that run.
 namespace evert {
@@ -20,14 +20,14 @@ struct BodyRange {
 
 /// All bodies of a scene as one mesh, placed in the world; exists on rank 0 only.
 struct SceneMesh {
-  Mesh mesh;                       ///< regions: one per body and per group with properties of its own
-  std::vector<BodyRange> bodies;   ///< in the order of SceneConfig::bodies
-  std::vector<int> region_body;    ///< per region: index of its body
-  std::vector<int> region_group;   ///< per region: index into BodyConfig::groups, or −1
+  Mesh mesh;                      ///< regions: one per body and per group with properties of its own
+  std::vector<BodyRange> bodies;  ///< in the order of SceneConfig::bodies
+  std::vector<int> region_body;   ///< per region: index of its body
+  std::vector<int> region_group;  ///< per region: index into BodyConfig::groups, or −1
 };
 
-/// Not collective. Reads or generates every body, keeps the named groups, places it in the world and resolves the node
-/// selections of the constraints (node set i is that of constraint i). Throws UserError.
+/// Not collective. Reads or generates every body, keeps the named groups, places it in the world and resolves
+/// the node selections of the constraints (node set i is that of constraint i). Throws UserError.
 [[nodiscard]] SceneMesh build_scene_mesh(const SceneConfig& scene);
 
 /// What a region is made of, from the scene's present values.
@@ -39,8 +39,8 @@ struct BuiltScene {
   std::vector<BodyRange> bodies;  ///< on every rank
 };
 
-/// Collective. Builds on rank 0, distributes, and makes the simulation at its initial state. Throws UserError on all
-/// ranks.
+/// Collective. Builds on rank 0, distributes, and makes the simulation at its initial state. Throws UserError
+/// on all ranks.
 [[nodiscard]] BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene);
 
 }  // namespace evert

@@ -1,0 +1,206 @@
+#include "evert/core/error.hpp"
+#include "evert/mesh/repair.hpp"
+#include "evert/scene/body_mesh.hpp"
+#include "evert/scene/build.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+// Rank 0's part of building a scene: all bodies as one mesh.
+namespace evert {
+namespace {
+
+struct Bounds {
+  Vec3d lower{{1e300, 1e300, 1e300}}, upper{{-1e300, -1e300, -1e300}};
+};
+
+Bounds bounds_of(std::span<const Vec3d> points) {
+  Bounds b;
+  for (const auto& p : points)
+    for (std::size_t k = 0; k < 3; ++k) {
+      b.lower[k] = std::min(b.lower[k], p[k]);
+      b.upper[k] = std::max(b.upper[k], p[k]);
+    }
+  return b;
+}
+
+/// Rodrigues' formula.
+Mat3d rotation(const RotationConfig& rotate) {
+  const double angle = rotate.angle * std::numbers::pi / 180;
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  const auto& a = rotate.axis;
+  const Mat3d cross_axis{{{{0, a[2], -a[1]}, {-a[2], 0, a[0]}, {a[1], -a[0], 0}}}};
+  return c * identity<double>() + s * cross_axis + (1 - c) * outer(a, a);
+}
+
+/// Fit, then scale, then rotate, then translate.
+void place(Mesh& mesh, const TransformConfig& transform) {
+  const auto bounds = bounds_of(mesh.nodes);
+  const auto size = bounds.upper - bounds.lower;
+  const auto center = transform.fit ? 0.5 * (bounds.lower + bounds.upper) : Vec3d{};
+  const double fit = transform.fit ? *transform.fit / std::max({size[0], size[1], size[2]}) : 1;
+  const auto turn = transform.rotate ? rotation(*transform.rotate) : identity<double>();
+  for (auto& node : mesh.nodes) node = turn * (transform.scale * fit * (node - center)) + transform.translate;
+}
+
+/// Mean of the cells' corner means, weighted by the volume that the edges at the first corner span: exact for tet4 and
+/// for boxes of hex8.
+Vec3d center_of_volume(const Mesh& mesh) {
+  double volume = 0;
+  Vec3d moment{};
+  for (const auto& block : mesh.cells) {
+    const auto n = static_cast<std::size_t>(node_count(block.type));
+    // The corners that share an edge with the first, in VTK's order.
+    const auto edges = block.type == CellType::hex8 ? std::array<std::size_t, 3>{1, 3, 4}
+                                                    : std::array<std::size_t, 3>{1, 2, 3};
+    for (std::size_t cell = 0; cell < block.region.size(); ++cell) {
+      const auto corner = [&](std::size_t a) {
+        return mesh.nodes[static_cast<std::size_t>(block.nodes[cell * n + a])];
+      };
+      Vec3d mean{};
+      for (std::size_t a = 0; a < n; ++a) mean += (1.0 / static_cast<double>(n)) * corner(a);
+      const auto o = corner(0);
+      const double share = std::abs(dot(corner(edges[0]) - o, cross(corner(edges[1]) - o, corner(edges[2]) - o)));
+      volume += share;
+      moment += share * mean;
+    }
+  }
+  return volume > 0 ? (1 / volume) * moment : Vec3d{};
+}
+
+/// Keeps the cells of the named groups only.
+void keep_groups(Mesh& mesh, const std::vector<std::string>& groups, const std::string& body) {
+  if (groups.empty()) return;
+  std::vector<bool> kept(mesh.regions.size(), false);
+  for (const auto& group : groups) {
+    const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), group);
+    if (found == mesh.regions.end())
+      throw UserError("bodies." + body + ".mesh.groups: the mesh has no volume group '" + group +
+                      "'; it has " + list_of(mesh.regions) + did_you_mean(group, mesh.regions));
+    kept[static_cast<std::size_t>(found - mesh.regions.begin())] = true;
+  }
+  for (auto& block : mesh.cells) {
+    const auto n = static_cast<std::size_t>(node_count(block.type));
+    CellBlock filtered{block.type, {}, {}};
+    for (std::size_t cell = 0; cell < block.region.size(); ++cell) {
+      if (!kept[static_cast<std::size_t>(block.region[cell])]) continue;
+      filtered.region.push_back(block.region[cell]);
+      filtered.nodes.insert(filtered.nodes.end(), &block.nodes[cell * n], &block.nodes[cell * n] + n);
+    }
+    block = std::move(filtered);
+  }
+  std::erase_if(mesh.cells, [](const CellBlock& block) { return block.region.empty(); });
+}
+
+Mesh body_mesh(const BodyConfig& body) {
+  Mesh mesh = make_body_mesh(body.mesh);
+  if (const auto* file = std::get_if<FileMesh>(&body.mesh)) keep_groups(mesh, file->groups, body.name);
+  drop_unused_nodes(mesh);
+  if (mesh.cell_count() == 0) throw UserError("bodies." + body.name + ".mesh: no volume cell is left");
+  place(mesh, body.transform);
+  const auto* file = std::get_if<FileMesh>(&body.mesh);
+  require_positive_volumes(mesh, file != nullptr ? file->path : "bodies." + body.name + ".mesh");
+  return mesh;
+}
+
+/// Per region of the body's own mesh: index of the group that overrides its properties, or −1.
+std::vector<int> groups_of_regions(const BodyConfig& body, const Mesh& mesh) {
+  std::vector<int> groups(mesh.regions.size(), -1);
+  for (std::size_t g = 0; g < body.groups.size(); ++g) {
+    const auto& name = body.groups[g].name;
+    const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), name);
+    if (found == mesh.regions.end())
+      throw UserError("bodies." + body.name + ".groups: the mesh has no volume group '" + name +
+                      "'; it has " + list_of(mesh.regions) + did_you_mean(name, mesh.regions));
+    groups[static_cast<std::size_t>(found - mesh.regions.begin())] = static_cast<int>(g);
+  }
+  return groups;
+}
+
+/// Joins one body to the scene: nodes appended, cells into the block of their type, regions by material.
+void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig& body) {
+  const auto groups = groups_of_regions(body, part);
+  std::map<int, std::int32_t> region_of_group;
+  const auto region = [&](int group) {
+    const auto [entry, is_new] =
+        region_of_group.try_emplace(group, static_cast<std::int32_t>(scene.region_body.size()));
+    if (is_new) {
+      scene.region_body.push_back(body_index);
+      scene.region_group.push_back(group);
+      scene.mesh.regions.push_back(
+          group < 0 ? body.name : body.name + "." + body.groups[static_cast<std::size_t>(group)].name);
+    }
+    return entry->second;
+  };
+  const auto first = scene.mesh.node_count();
+  scene.mesh.nodes.insert(scene.mesh.nodes.end(), part.nodes.begin(), part.nodes.end());
+  for (const auto& block : part.cells) {
+    auto& all = scene.mesh.cells;
+    auto place_of =
+        std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.type >= block.type; });
+    if (place_of == all.end() || place_of->type != block.type)
+      place_of = all.insert(place_of, {block.type, {}, {}});
+    for (const auto node : block.nodes) place_of->nodes.push_back(first + node);
+    for (const auto own : block.region)
+      place_of->region.push_back(region(groups[static_cast<std::size_t>(own)]));
+  }
+}
+
+/// The nodes a constraint names, as numbers of the scene's mesh.
+NodeSet select_nodes(const ConstraintConfig& constraint, std::size_t number, const Mesh& part,
+                     GlobalIndex first, const std::string& body) {
+  NodeSet selected{"constraint_" + std::to_string(number), {}};
+  const auto take_if = [&](auto&& inside) {
+    for (std::size_t i = 0; i < part.nodes.size(); ++i)
+      if (inside(part.nodes[i])) selected.nodes.push_back(first + static_cast<GlobalIndex>(i));
+  };
+  if (const auto* named = std::get_if<NamedSelection>(&constraint.nodes)) {
+    std::vector<std::string> names;
+    for (const auto& set : part.node_sets) names.push_back(set.name);
+    const auto found = std::find(names.begin(), names.end(), named->node_set);
+    if (found == names.end())
+      throw UserError("constraints[" + std::to_string(number) + "].node_set: the mesh of body '" + body +
+                      "' has no node set '" + named->node_set + "'; it has " +
+                      (names.empty() ? "none" : list_of(names)) + did_you_mean(named->node_set, names));
+    for (const auto node : part.node_sets[static_cast<std::size_t>(found - names.begin())].nodes)
+      selected.nodes.push_back(first + node);
+  } else if (const auto* box = std::get_if<BoxSelection>(&constraint.nodes)) {
+    take_if([&](const Vec3d& p) {
+      bool inside = true;
+      for (std::size_t k = 0; k < 3; ++k) inside = inside && p[k] >= box->min[k] && p[k] <= box->max[k];
+      return inside;
+    });
+  } else {
+    const auto& sphere = std::get<SphereSelection>(constraint.nodes);
+    take_if([&](const Vec3d& p) { return norm(p - sphere.center) <= sphere.radius; });
+  }
+  if (selected.nodes.empty())
+    throw UserError("constraints[" + std::to_string(number) + "] selects no node of body '" + body + "'");
+  return selected;
+}
+
+}  // namespace
+
+SceneMesh build_scene_mesh(const SceneConfig& scene) {
+  SceneMesh all;
+  all.mesh.node_sets.resize(scene.constraints.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const auto& body = scene.bodies[b];
+    const auto part = body_mesh(body);
+    const auto first = all.mesh.node_count();
+    append(all, part, static_cast<int>(b), body);
+    const auto bounds = bounds_of(part.nodes);
+    all.bodies.push_back(
+        {body.name, first, all.mesh.node_count(), bounds.lower, bounds.upper, center_of_volume(part)});
+    for (std::size_t c = 0; c < scene.constraints.size(); ++c)
+      if (scene.constraints[c].body == b)
+        all.mesh.node_sets[c] = select_nodes(scene.constraints[c], c, part, first, body.name);
+  }
+  return all;
+}
+
+}  // namespace evert
