@@ -1,5 +1,7 @@
 # add_unit_test(<name> SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds])
 #   One GoogleTest binary; ctest lists its cases one by one.
+# add_program_test(<name> SOURCES ... [LABELS ...] [TIMEOUT seconds])
+#   The same for a binary whose cases start the program `evert`, some of them under mpirun.
 # add_mpi_test(<name> SOURCES ... LINK ... [RANKS 1 2 3] [LABELS ...] [TIMEOUT seconds])
 #   One binary with the main of tests/mpi, run by mpirun once per number of ranks.
 # docs/design/testing.md says where tests live and what the labels mean.
@@ -17,18 +19,33 @@ set(EVERT_TEST_ENVIRONMENT
 
 function(add_unit_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 600)
-  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} evert_warnings GTest::gtest GTest::gtest_main)
+  evert_discover_cases(${name} "unit;${ARG_LABELS}" "${ARG_TIMEOUT}" 1)
+endfunction()
+
+function(add_program_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_compile_definitions(${name} PRIVATE
+    EVERT_PROGRAM="$<TARGET_FILE:evert>" EVERT_MPIEXEC="${MPIEXEC_EXECUTABLE}")
+  target_link_libraries(${name} PRIVATE evert_warnings GTest::gtest GTest::gtest_main)
+  add_dependencies(${name} evert)
+  evert_discover_cases(${name} "program;${ARG_LABELS}" "${ARG_TIMEOUT}" 2)
+endfunction()
+
+# Makes the cases of a GoogleTest binary tests of ctest.
+function(evert_discover_cases name labels timeout processors)
+  if(NOT timeout)
+    set(timeout 600)
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 TEST_LIST discovered_${name})
   # Properties that are lists do not survive gtest_discover_tests (CMake 3.25): set after the discovery instead.
   set(properties ${CMAKE_CURRENT_BINARY_DIR}/${name}_properties.cmake)
   file(CONFIGURE OUTPUT ${properties} @ONLY CONTENT [[
 if(discovered_@name@)
   set_tests_properties(${discovered_@name@} PROPERTIES
-    ENVIRONMENT "@EVERT_TEST_ENVIRONMENT@" LABELS "unit;@ARG_LABELS@" TIMEOUT @ARG_TIMEOUT@)
+    ENVIRONMENT "@EVERT_TEST_ENVIRONMENT@" LABELS "@labels@" TIMEOUT @timeout@ PROCESSORS @processors@)
 endif()
 ]])
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${properties})

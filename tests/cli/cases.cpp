@@ -1,0 +1,262 @@
+#include "case.hpp"
+#include <fstream>
+
+/// What the program says to wrong input. One entry a case: to add one, copy the nearest and change it. What
+/// an entry leaves out is the default of case.hpp: `evert run scene.yaml`, exit code 2, at 1 and 3 ranks.
+namespace evert::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The good file with one edit, and what the program must say.
+Case bad_scene(const std::string& name, const Edit& edit, const std::vector<std::string>& says) {
+  return {.name = name, .files = {scene({edit})}, .says = says};
+}
+
+Case bad_mesh(const std::string& name, const File& mesh, const std::vector<std::string>& says) {
+  return {.name = name, .files = {scene_with_mesh(mesh.path), mesh}, .says = says};
+}
+
+Case bad_command(const std::string& name, const std::string& command, const std::vector<std::string>& says) {
+  return {.name = name, .command = command, .files = {scene()}, .says = says};
+}
+
+/// Restart from what is left of a checkpoint of the good scene.
+Case bad_restart(const std::string& name, const std::function<void(const fs::path& place)>& spoil,
+                 const std::vector<std::string>& says) {
+  return {.name = name,
+          .before = "run scene.yaml -set checkpoint.every_simulated=1e-3",
+          .spoil = spoil,
+          .command = "run scene.yaml --restart out/checkpoint.h5",
+          .files = {scene()},
+          .says = says};
+}
+
+void truncate(const fs::path& file, double fraction) {
+  fs::resize_file(file, static_cast<std::uintmax_t>(static_cast<double>(fs::file_size(file)) * fraction));
+}
+
+const std::vector<Case> good_runs{
+    {.name = "good_scene", .files = {scene()}, .exit_code = 0},
+    {.name = "good_gmsh2", .files = {scene_with_mesh("cube.msh"), gmsh2()}, .exit_code = 0},
+    {.name = "good_gmsh4", .files = {scene_with_mesh("cube.msh"), gmsh4()}, .exit_code = 0},
+    {.name = "good_medit", .files = {scene_with_mesh("cube.mesh"), medit()}, .exit_code = 0},
+    {.name = "good_restart",
+     .before = "run scene.yaml -set checkpoint.every_simulated=1e-3",
+     .command = "run scene.yaml --restart out/checkpoint.h5",
+     .files = {scene()},
+     .exit_code = 0},
+    {.name = "check", .command = "check scene.yaml", .files = {scene()}, .exit_code = 0, .says = {"48"}},
+    {.name = "quiet", .command = "run scene.yaml -quiet", .files = {scene()}, .exit_code = 0},
+    {.name = "version", .command = "-version", .exit_code = 0, .says = {"evert "}},
+    {.name = "help", .command = "-help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
+    {.name = "explain",
+     .command = "explain bodies.material.poissons_ratio",
+     .exit_code = 0,
+     .says = {"poissons_ratio"},
+     .ranks = {1}},
+};
+
+const std::vector<Case> bad_commands{
+    bad_command("no_command", "", {"run, check"}),
+    bad_command("unknown_command", "rum scene.yaml", {"'rum'", "did you mean 'run'?"}),
+    bad_command("no_scene", "run", {"scene"}),
+    bad_command("two_scenes", "run scene.yaml scene.yaml", {"scene.yaml"}),
+    bad_command("missing_scene", "run nowhere.yaml", {"nowhere.yaml: there is no such file"}),
+    {.name = "scene_is_directory", .files = {{"scene.yaml/"}}, .says = {"scene.yaml: is a directory"}},
+    bad_command("unknown_option", "run scene.yaml -damping_ksp_rtoll 1e-3",
+                {"damping_ksp_rtoll", "did you mean '-damping_ksp_rtol'?"}),
+    bad_command("unknown_option_of_nobody", "run scene.yaml -xyzzy", {"xyzzy"}),
+    bad_command("unknown_option_check", "check scene.yaml -damping_ksp_typ cg", {"damping_ksp_typ"}),
+    bad_command("unknown_solver", "run scene.yaml -damping_ksp_type conjugate", {"conjugate"}),
+    bad_command("unknown_preconditioner", "run scene.yaml -damping_pc_type jakobi", {"jakobi"}),
+    bad_command("option_without_number", "run scene.yaml -damping_ksp_rtol small", {"damping_ksp_rtol"}),
+    bad_command("set_without_value", "run scene.yaml -set end_time", {"path=value"}),
+    bad_command("set_without_argument", "run scene.yaml -set", {"-set"}),
+    bad_command("set_unknown_key", "run scene.yaml -set integrator.time_stepp=1e-4",
+                {"-set integrator.time_stepp=1e-4", "did you mean 'time_step'?"}),
+    bad_command("set_unknown_body", "run scene.yaml -set bodies.cubes.density=1", {"bodies.cubes", "'cube'"}),
+    bad_command("set_out_of_range", "run scene.yaml -set bodies.cube.density=-1",
+                {"bodies.cube.density", "> 0"}),
+    bad_command("explain_unknown_key", "explain bodies.materiel", {"materiel", "did you mean"}),
+};
+
+const std::vector<Case> bad_scenes{
+    {.name = "empty_scene", .files = {{"scene.yaml", ""}}, .says = {"scene.yaml: holds nothing"}},
+    {.name = "binary_scene",
+     .files = {{"scene.yaml", std::string("\x00\x01\x02", 3)}},
+     .says = {"zero bytes"}},
+    {.name = "scene_is_a_list", .files = {{"scene.yaml", "[1, 2]\n"}}, .says = {"map of keys"}},
+    {.name = "scene_cut_short", .files = {cut(scene(), 6)}, .says = {"scene.yaml:"}},
+    bad_scene("not_yaml", {"density: 1000", "density: {1000"}, {"scene.yaml:", "YAML"}),
+    bad_scene("misspelt_key", {"density: 1000", "densty: 1000"},
+              {"scene.yaml:8", "densty", "did you mean 'density'?"}),
+    bad_scene("misspelt_top_key", {"gravity:", "gravitiy:"}, {"scene.yaml:3", "did you mean 'gravity'?"}),
+    bad_scene("unknown_key", {"end_time: 2e-3", "end_time: 2e-3\nxyzzy: 1"}, {"scene.yaml:3", "xyzzy"}),
+    bad_scene("duplicate_key", {"end_time: 2e-3", "end_time: 2e-3\nend_time: 1"},
+              {"scene.yaml:3", "duplicate key 'end_time'", "scene.yaml:2"}),
+    bad_scene("missing_key", {"    density: 1000\n", ""}, {"bodies.cube", "density"}),
+    {.name = "missing_bodies", .files = {{"scene.yaml", "name: void\nend_time: 1\n"}}, .says = {"'bodies'"}},
+    {.name = "no_body",
+     .files = {{"scene.yaml", "name: void\nend_time: 1\nbodies: {}\n"}},
+     .says = {"scene.yaml:3", "at least one body"}},
+    bad_scene("wrong_type", {"density: 1000", "density: heavy"},
+              {"scene.yaml:8", "bodies.cube.density", "'heavy'"}),
+    bad_scene("list_for_number", {"density: 1000", "density: [1000]"}, {"bodies.cube.density", "a list"}),
+    bad_scene("number_for_list", {"gravity: [0, -9.81, 0]", "gravity: -9.81"}, {"gravity"}),
+    bad_scene("short_vector", {"gravity: [0, -9.81, 0]", "gravity: [0, -9.81]"}, {"gravity", "3 numbers"}),
+    bad_scene("not_a_number", {"density: 1000", "density: .nan"}, {"bodies.cube.density"}),
+    bad_scene("infinite", {"density: 1000", "density: .inf"}, {"bodies.cube.density"}),
+    bad_scene("huge", {"density: 1000", "density: 1e999"}, {"bodies.cube.density"}),
+    bad_scene("number_with_unit", {"density: 1000", "density: 1000 kg/m^3"}, {"bodies.cube.density"}),
+    bad_scene("negative_density", {"density: 1000", "density: -1000"}, {"bodies.cube.density", "> 0"}),
+    bad_scene("zero_end_time", {"end_time: 2e-3", "end_time: 0"}, {"scene.yaml:2", "end_time", "> 0"}),
+    bad_scene("incompressible", {"poissons_ratio: 0.3", "poissons_ratio: 0.5"},
+              {"bodies.cube.material.poissons_ratio", "(-1, 0.5)"}),
+    bad_scene("negative_stiffness", {"youngs_modulus: 1e5", "youngs_modulus: -1"},
+              {"bodies.cube.material.youngs_modulus", ">= 0"}),
+    bad_scene("unknown_model", {"neo_hookean", "neohookean"},
+              {"scene.yaml:9", "did you mean 'neo_hookean'?"}),
+    bad_scene("unknown_shape", {"half_space", "halfspace"}, {"scene.yaml:12", "did you mean 'half_space'?"}),
+    bad_scene("no_direction", {"normal: [0, 1, 0]", "normal: [0, 0, 0]"}, {"obstacles.ground.normal"}),
+    bad_scene("unknown_generator", {"generate: box", "generate: bocks"}, {"bodies.cube.mesh", "box"}),
+    bad_scene("too_many_cells", {"cells: [2, 2, 2]", "cells: [1000000, 1000000, 1000000]"},
+              {"bodies.cube.mesh.cells", "too many"}),
+    bad_scene("no_cells", {"cells: [2, 2, 2]", "cells: [0, 2, 2]"}, {"bodies.cube.mesh.cells[0]"}),
+    bad_scene("event_on_missing_body",
+              {"petsc:", "events: [{at: 0, set: bodies.ball.material.youngs_modulus, to: 1}]\npetsc:"},
+              {"events[0]", "ball"}),
+    bad_scene("constraint_on_missing_body",
+              {"petsc:", "constraints: [{body: ball, node_set: x_min, fixed: true}]\npetsc:"},
+              {"constraints[0].body", "'ball'", "cube"}),
+    bad_scene("constraint_on_missing_nodes",
+              {"petsc:", "constraints: [{body: cube, node_set: left, fixed: true}]\npetsc:"},
+              {"left", "x_min"}),
+    bad_scene("unknown_petsc_option", {"damping_ksp_rtol", "damping_ksp_rtl"},
+              {"damping_ksp_rtl", "damping_ksp_rtol"}),
+    {.name = "more_ranks_than_cells",
+     .files = {scene({{"cells: [2, 2, 2]", "cells: [1, 1, 1], cell: hex8"}})},
+     .says = {"rank"},
+     .ranks = {3}},
+};
+
+const std::vector<Case> bad_meshes{
+    {.name = "missing_mesh",
+     .files = {scene_with_mesh("cube.msh")},
+     .says = {"cube.msh: there is no such file"}},
+    {.name = "mesh_is_directory",
+     .files = {scene_with_mesh("cube.msh"), {"cube.msh/"}},
+     .says = {"is a directory"}},
+    bad_mesh("unknown_format", {"cube.stl", "solid cube\n"}, {"cube.stl", "allowed are Gmsh"}),
+    bad_mesh("gmsh_of_version_3", gmsh2({{"2.2 0 8", "3.0 0 8"}}), {"cube.msh:2", "allowed are 2.2 and 4.1"}),
+    bad_mesh("gmsh_of_unknown_element", gmsh2({{"1 4 2 7 1 1 2 3 7", "1 77 2 7 1 1 2 3 7"}}),
+             {"cube.msh:", "type 77"}),
+    bad_mesh("gmsh_of_pyramids", gmsh2({{"1 4 2 7 1 1 2 3 7", "1 7 2 7 1 1 2 3 7 4"}}),
+             {"cube.msh:", "pyramid"}),
+    bad_mesh("gmsh_nan", gmsh2({{"3 1 1 0", "3 nan 1 0"}}), {"cube.msh:", "finite number"}),
+    bad_mesh("gmsh_index_out_of_range", gmsh2({{"1 4 2 7 1 1 2 3 7", "1 4 2 7 1 1 2 3 9"}}),
+             {"cube.msh:", "9"}),
+    bad_mesh("gmsh_negative_index", gmsh2({{"1 4 2 7 1 1 2 3 7", "1 4 2 7 1 1 2 3 -7"}}),
+             {"cube.msh:", "-7"}),
+    bad_mesh("gmsh_duplicate_node", gmsh2({{"2 1 0 0", "1 1 0 0"}}), {"cube.msh:"}),
+    bad_mesh("gmsh_repeated_corner", gmsh2({{"1 4 2 7 1 1 2 3 7", "1 4 2 7 1 1 2 2 7"}}), {"cube"}),
+    bad_mesh("gmsh_huge_count", gmsh2({{"$Nodes\n8\n", "$Nodes\n8000000000000\n"}}), {"cube.msh:"}),
+    bad_mesh("gmsh_of_triangles",
+             gmsh2({{"6\n1 4 2 7 1 1 2 3 7\n2 4 2 7 1 1 3 4 7\n3 4 2 7 1 1 4 8 7\n4 4 2 7 1 1 8 5 7\n"
+                     "5 4 2 7 1 1 5 6 7\n6 4 2 7 1 1 6 2 7\n",
+                     "1\n1 2 2 7 1 1 2 3\n"}}),
+             {"cube.msh", "volume cells"}),
+    bad_mesh("all_inside_out",
+             gmsh2({{"1 4 2 7 1 1 2 3 7\n2 4 2 7 1 1 3 4 7\n3 4 2 7 1 1 4 8 7\n4 4 2 7 1 1 8 5 7\n"
+                     "5 4 2 7 1 1 5 6 7\n6 4 2 7 1 1 6 2 7\n",
+                     "1 4 2 7 1 2 1 3 7\n2 4 2 7 1 3 1 4 7\n3 4 2 7 1 4 1 8 7\n4 4 2 7 1 8 1 5 7\n"
+                     "5 4 2 7 1 5 1 6 7\n6 4 2 7 1 6 1 2 7\n"}}),
+             {"negative", "evert mesh"}),
+    bad_mesh("one_flat", gmsh2({{"7 1 1 1", "7 1 1 0"}}), {"volume"}),
+    {.name = "unknown_group",
+     .files = {scene_with_mesh("cube.msh, groups: [skin]"), gmsh2()},
+     .says = {"skin", "flesh"}},
+    bad_mesh("medit_of_version_9", medit({{"Formatted 2", "Formatted 9"}}),
+             {"cube.mesh:", "allowed are 1 to 4"}),
+    bad_mesh("medit_flat", medit({{"Dimension 3", "Dimension 2"}}), {"cube.mesh:2", "dimension must be 3"}),
+    bad_mesh("medit_index_out_of_range", medit({{"1 2 3 7 1", "1 2 3 0 1"}}), {"cube.mesh:", "vertex 0"}),
+    bad_mesh("medit_without_cells", medit({{"Tetrahedra\n6", "Tetrahedra\n0"}}), {"cube.mesh"}),
+};
+
+const std::vector<Case> bad_output{
+    {.name = "output_below_a_file",
+     .command = "run scene.yaml -set output.directory=plain/out",
+     .files = {scene(), {"plain", "a file\n"}},
+     .says = {"plain"}},
+    {.name = "output_is_a_file",
+     .command = "run scene.yaml -set output.directory=plain",
+     .files = {scene(), {"plain", "a file\n"}},
+     .says = {"plain"}},
+    bad_command("output_in_proc", "run scene.yaml -set output.directory=/proc/out", {"/proc/out"}),
+    {.name = "disk_full",
+     .command = "run scene.yaml -set output.directory=disk/out -set bodies.cube.mesh.cells=[8,8,8]",
+     .files = {scene()},
+     .disk_kib = 64,
+     .says = {"disk/out"}},
+};
+
+const std::vector<Case> bad_restarts{
+    bad_restart("restart_from_nothing",
+                [](const fs::path& place) { fs::remove(place / "out/checkpoint.h5"); },
+                {"checkpoint.h5", "no such file"}),
+    bad_restart("restart_from_a_directory",
+                [](const fs::path& place) {
+                  fs::remove(place / "out/checkpoint.h5");
+                  fs::create_directory(place / "out/checkpoint.h5");
+                },
+                {"checkpoint.h5"}),
+    bad_restart("restart_from_empty", [](const fs::path& place) { truncate(place / "out/checkpoint.h5", 0); },
+                {"checkpoint.h5"}),
+    bad_restart("restart_from_a_third",
+                [](const fs::path& place) { truncate(place / "out/checkpoint.h5", 0.3); }, {"checkpoint.h5"}),
+    bad_restart("restart_from_all_but_the_end",
+                [](const fs::path& place) { truncate(place / "out/checkpoint.h5", 0.98); },
+                {"checkpoint.h5"}),
+    bad_restart("restart_from_text",
+                [](const fs::path& place) { std::ofstream(place / "out/checkpoint.h5") << "not HDF5\n"; },
+                {"checkpoint.h5"}),
+    bad_restart(
+        "restart_of_another_mesh",
+        [](const fs::path& place) {
+          std::ofstream(place / "scene.yaml") << scene({{"cells: [2, 2, 2]", "cells: [3, 2, 2]"}}).content;
+        },
+        {"checkpoint.h5", "another scene"}),
+    bad_restart("restart_of_another_material",
+                [](const fs::path& place) {
+                  std::ofstream(place / "scene.yaml")
+                      << scene({{"youngs_modulus: 1e5", "youngs_modulus: 2e5"}}).content;
+                },
+                {"checkpoint.h5", "another scene"}),
+};
+
+/// Meshes that end after every tenth of their bytes.
+std::vector<Case> cut_meshes() {
+  std::vector<Case> cases;
+  for (int tenths = 0; tenths < 10; ++tenths) {
+    const auto percent = std::to_string(10 * tenths);
+    cases.push_back(bad_mesh("gmsh_cut_at_" + percent + "_percent", cut(gmsh4(), tenths), {"cube.msh"}));
+    cases.push_back(bad_mesh("medit_cut_at_" + percent + "_percent", cut(medit(), tenths), {"cube.mesh"}));
+    cases.back().ranks = {1};
+  }
+  return cases;
+}
+
+}  // namespace
+
+const std::vector<Case>& all_cases() {
+  static const auto cases = [] {
+    std::vector<Case> all;
+    for (const auto& group :
+         {good_runs, bad_commands, bad_scenes, bad_meshes, cut_meshes(), bad_output, bad_restarts})
+      all.insert(all.end(), group.begin(), group.end());
+    return all;
+  }();
+  return cases;
+}
+
+}  // namespace evert::cli
