@@ -61,13 +61,13 @@ void resolve_constraints(SceneConfig& scene, const Value& root) {
   for (const auto& body : scene.bodies) names.push_back(body.name);
   for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
     auto& constraint = scene.constraints[i];
-    const auto found = std::find(names.begin(), names.end(), constraint.body);
+    const auto found = std::find(names.begin(), names.end(), constraint.body_name);
     if (found == names.end())
       schema::fail(*root.find("constraints")->items[i].find("body"),
                    "constraints[" + std::to_string(i) + "].body",
-                   "there is no body " + schema::shown(constraint.body) + ": must be " + list_of(names) +
-                       did_you_mean(constraint.body, names));
-    constraint.body_index = static_cast<std::size_t>(found - names.begin());
+                   "there is no body " + schema::shown(constraint.body_name) + ": must be " + list_of(names) +
+                       did_you_mean(constraint.body_name, names));
+    constraint.body = static_cast<std::size_t>(found - names.begin());
   }
 }
 

@@ -1,7 +1,6 @@
 #include "tables.hpp"
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 /// The meshes that a body can have: a file, or one of the generators.
 namespace evert {
@@ -14,7 +13,7 @@ constexpr double most_cells = 1e9;
 
 /// Throws when a volume [m^3] filled with cells of an edge length would not fit into memory by far.
 void expect_possible(double volume, double edge_length, const Value& map, const std::string& path) {
-  const double cells = 6 * std::numbers::sqrt2 * volume / (edge_length * edge_length * edge_length);
+  const double cells = 12 * volume / (edge_length * edge_length * edge_length);
   if (cells <= most_cells) return;
   const auto* value = map.find("edge_length");
   fail(*value, join(path, "edge_length"),
@@ -69,10 +68,11 @@ const Table<BoxMesh>& box_mesh() {
           .either("edge_length", &BoxMesh::edge_length, length(), "0.05",
                   "Edge of the cubes, about; instead of cells.")
           .optional("cell", &BoxMesh::cell,
-                    one_of<BoxCell>({{"hex8", BoxCell::hex8, "hexahedra"},
-                                     {"tet5", BoxCell::tet5, "5 tetrahedra a cube"},
-                                     {"tet6", BoxCell::tet6, "6 tetrahedra a cube"},
-                                     {"bcc", BoxCell::bcc, "tetrahedra of the body-centred cubic lattice"}}),
+                    one_of<BoxCells>({{"bcc", BoxCells::bcc, "tetrahedra of the body-centred cubic lattice"},
+                                      {"tet6", BoxCells::tet6, "6 tetrahedra a cube"},
+                                      {"tet5", BoxCells::tet5, "5 tetrahedra a cube"},
+                                      {"hex8", BoxCells::hex8, "hexahedra"},
+                                      {"wedge6", BoxCells::wedge6, "2 wedges a cube, along z"}}),
                     "tet6", "What the cubes are cut into.")
           .then(finish_box);
   return table;
@@ -121,6 +121,20 @@ const Table<CylinderMesh>& cylinder_mesh() {
   return table;
 }
 
+const Table<CapsuleMesh>& capsule_mesh() {
+  static const auto table =
+      Table<CapsuleMesh>("A cylinder around the y axis with a half ball at both ends.")
+          .required("radius", &CapsuleMesh::radius, length(), "0.2", "Of the cylinder and the half balls.")
+          .required("length", &CapsuleMesh::length, length(), "1", "Of the cylinder alone.")
+          .required("edge_length", &CapsuleMesh::edge_length, length(), "0.05",
+                    "Edge of the tetrahedra, about.")
+          .then([](CapsuleMesh& capsule, const Value& map, const std::string& path) {
+            const double r = capsule.radius;
+            expect_possible(3.15 * r * r * (capsule.length + 1.34 * r), capsule.edge_length, map, path);
+          });
+  return table;
+}
+
 const Table<EllipsoidMesh>& ellipsoid_mesh() {
   static const auto table =
       Table<EllipsoidMesh>("An ellipsoid.")
@@ -145,6 +159,7 @@ const Table<MeshConfig>& mesh_table() {
                                 .alternative("ball", std::identity{}, ball_mesh())
                                 .alternative("torus", std::identity{}, torus_mesh())
                                 .alternative("cylinder", std::identity{}, cylinder_mesh())
+                                .alternative("capsule", std::identity{}, capsule_mesh())
                                 .alternative("ellipsoid", std::identity{}, ellipsoid_mesh());
   return table;
 }

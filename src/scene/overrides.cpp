@@ -93,9 +93,9 @@ class Override {
     if (entry == nullptr) {
       const auto names = names_in(map);
       const auto suggestion = did_you_mean(parts_[part], names);
-      if (names.empty()) wrong(part, "is not there: the scene has none");
+      if (names.empty()) wrong(part, "is not in the scene, which has none there");
       wrong(part,
-            "the scene has no such name" + (suggestion.empty() ? "; it has " + list_of(names) : suggestion));
+            "is not in the scene" + (suggestion.empty() ? ", which has " + list_of(names) : suggestion));
     }
     if (last(part))
       assign(map, parts_[part]);
@@ -109,9 +109,8 @@ class Override {
     std::size_t index = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), index);
     if (list.kind != Value::Kind::list) wrong(part, "is no index: the scene has no list there");
-    if (list.items.empty()) wrong(part, "is no index: the list is empty");
     if (result.ec != std::errc() || result.ptr != text.data() + text.size() || index >= list.items.size())
-      wrong(part, "must be an index from 0 to " + std::to_string(list.items.size() - 1));
+      wrong(part, "is no index of the list, which has " + std::to_string(list.items.size()) + " items");
     if (last(part))
       list.items[index] = value_;
     else if (table != nullptr)

@@ -136,7 +136,8 @@ const Table<ObstacleConfig>& obstacle_table() {
 const Table<ConstraintConfig>& constraint_table() {
   static const auto table =
       Table<ConstraintConfig>("Nodes whose velocity is prescribed.")
-          .required("body", &ConstraintConfig::body, text("name"), "torus", "The body whose nodes are meant.")
+          .required("body", &ConstraintConfig::body_name, text("name"), "torus",
+                    "The body whose nodes are meant.")
           .alternative_by_key("node_set", &ConstraintConfig::nodes, select_by_name())
           .alternative_by_key("box", &ConstraintConfig::nodes, select_by_box())
           .alternative_by_key("sphere", &ConstraintConfig::nodes, select_by_sphere())

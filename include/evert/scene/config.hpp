@@ -2,6 +2,7 @@
 #include "evert/materials/damping.hpp"
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
+#include "evert/mesh/generators.hpp"
 
 #include <array>
 #include <cstddef>
@@ -26,18 +27,16 @@ struct FileMesh {
   std::vector<std::string> groups;  ///< named volume groups to keep; empty: all
 };
 
-enum class BoxCell { hex8, tet5, tet6, bcc };
-
 struct BoxMesh {
   Vec3d size{};  ///< [m] max − min
   Vec3d min{};   ///< [m]
   Vec3d max{};   ///< [m]
-  BoxCell cell = BoxCell::tet6;
+  BoxCells cell = BoxCells::bcc;
   std::array<int, 3> cells{};  ///< along x, y, z; all 0 when edge_length is given
   double edge_length = 0;      ///< [m]; 0 when cells are given
 };
 
-/// The implicit shapes are centred at the origin; torus and cylinder have the y axis as theirs.
+/// The implicit shapes are centred at the origin; torus, cylinder and capsule have the y axis as theirs.
 struct BallMesh {
   double radius = 0;       ///< [m]
   double edge_length = 0;  ///< [m]
@@ -52,12 +51,19 @@ struct CylinderMesh {
   double length = 0;       ///< [m]
   double edge_length = 0;  ///< [m]
 };
+/// A cylinder with a half ball at both ends.
+struct CapsuleMesh {
+  double radius = 0;       ///< [m]
+  double length = 0;       ///< [m] of the cylinder alone
+  double edge_length = 0;  ///< [m]
+};
 struct EllipsoidMesh {
   Vec3d radii{};           ///< [m]
   double edge_length = 0;  ///< [m]
 };
 
-using MeshConfig = std::variant<FileMesh, BoxMesh, BallMesh, TorusMesh, CylinderMesh, EllipsoidMesh>;
+using MeshConfig =
+    std::variant<FileMesh, BoxMesh, BallMesh, TorusMesh, CylinderMesh, CapsuleMesh, EllipsoidMesh>;
 
 // --- bodies
 
@@ -169,8 +175,8 @@ struct VelocityKey {
 
 /// Nodes whose velocity is prescribed.
 struct ConstraintConfig {
-  std::string body;
-  std::size_t body_index = 0;  ///< into SceneConfig::bodies
+  std::string body_name;
+  std::size_t body = 0;  ///< its index into SceneConfig::bodies
   NodeSelection nodes;
   bool fixed = false;  ///< then velocity is one key, 0 at 0 s
   /// Linear in between, constant outside; times strictly increasing; never empty.
