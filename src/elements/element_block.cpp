@@ -58,21 +58,18 @@ class LaneWriter {
       const Mat3d jacobian = rest_jacobian(element_, q, cell, rest_positions);
       block_.volumes[at(slot, points, q)] = element_.weights[q] * determinant(jacobian);
       const Mat3d inverse_jacobian = inverse(jacobian);
-      if constexpr (ReferenceElement<nodes, points>::affine) {
-        for (std::size_t i = 0; i < 9; ++i)
-          block_.gradients[at(slot, 9, i)] = inverse_jacobian.column[i / 3][i % 3];
-      } else {
-        for (std::size_t a = 0; a < nodes; ++a) {
-          const Vec3d gradient = transpose_times(inverse_jacobian, element_.gradients[q][a]);
-          for (std::size_t i = 0; i < 3; ++i) {
-            block_.gradients[at(slot, element_.gradient_numbers, (q * nodes + a) * 3 + i)] = gradient[i];
-          }
+      for (std::size_t a = 1; a < nodes; ++a) {
+        const Vec3d gradient = transpose_times(inverse_jacobian, element_.gradients[q][a]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          block_.gradients[at(slot, gradient_numbers, (q * (nodes - 1) + a - 1) * 3 + i)] = gradient[i];
         }
       }
     }
   }
 
  private:
+  static constexpr std::size_t gradient_numbers = points * (nodes - 1) * 3;
+
   /// Position of number `i` of the `count` a cell has, in an array [batch][count][lane].
   [[nodiscard]] std::size_t at(std::size_t slot, std::size_t count, std::size_t i) const {
     const auto lanes = static_cast<std::size_t>(block_.lanes);
@@ -137,7 +134,7 @@ ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes
 
         const std::size_t slots = block.cell_of_lane.size();
         block.nodes.resize(slots * node_total);
-        block.gradients.resize(slots * element.gradient_numbers);
+        block.gradients.resize(slots * point_total * (node_total - 1) * 3);
         block.volumes.resize(slots * point_total);
         LaneWriter writer(element, block);
         for (std::size_t slot = 0; slot < slots; ++slot) {

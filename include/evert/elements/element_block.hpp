@@ -25,8 +25,9 @@ struct ElementBlock {
   BatchRange interior;              ///< batches whose cells touch owned nodes only
   BatchRange boundary;              ///< the others
   AlignedVector<LocalIndex> nodes;  ///< [batch][node of the cell][lane]
-  AlignedVector<double> gradients;  ///< tet4: D_m^-1 by columns, [batch][9][lane]; else dN/dX,
-                                    ///< [batch][point][node][3][lane] [1/m]
+  /// ∂N_a/∂X of every node but the first, whose gradient is minus their sum: [batch][point][node 1…][3][lane]
+  /// [1/m]. For tet4 these are the rows of D_m⁻¹.
+  AlignedVector<double> gradients;
   AlignedVector<double> volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
   std::vector<LocalIndex>
       cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding

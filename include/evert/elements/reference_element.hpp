@@ -1,14 +1,12 @@
 #pragma once
-#include "evert/core/error.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/mesh.hpp"
 
 #include <array>
-#include <cmath>
-#include <string>
+#include <span>
 
-/// The reference elements: one aggregate each. A new element is one more aggregate and one line in
-/// with_reference_element().
+/// The reference elements: one aggregate each. A new element is one more aggregate and its name in
+/// AllReferenceElements.
 namespace evert {
 
 /// Shape functions and quadrature of one cell type on its reference cell ξ. Nodes in VTK's order.
@@ -16,10 +14,6 @@ template <int node_total, int point_total>
 struct ReferenceElement {
   static constexpr int nodes = node_total;
   static constexpr int points = point_total;
-  /// F is the same everywhere in the cell: F = D_s D_m⁻¹ of edges suffices.  paper A, eq. (2)
-  static constexpr bool affine = node_total == 4;
-  /// Numbers a cell keeps of its rest shape (ElementBlock::gradients).
-  static constexpr int gradient_numbers = affine ? 9 : 3 * node_total * point_total;
   template <class Value>
   using PerPoint = std::array<Value, point_total>;
   template <class Value>
@@ -73,20 +67,40 @@ constexpr ReferenceElement<8, 8> make_hex8() {
 
 inline constexpr ReferenceElement<8, 8> hex8 = detail::make_hex8();
 
-/// Calls `visit` with the reference element of `type`: the one place that knows which cell types carry
-/// elements. Throws UserError for the others.
-template <class Visitor>
-decltype(auto) with_reference_element(CellType type, Visitor&& visit) {
-  switch (type) {
-    case CellType::tet4:
-      return visit(tet4);
-    case CellType::hex8:
-      return visit(hex8);
-    default:
-      break;
+/// A list of reference elements.
+template <const auto&... elements>
+struct ReferenceElements {};
+
+/// Every cell type that carries elements.
+using AllReferenceElements = ReferenceElements<tet4, hex8>;
+
+namespace detail {
+
+/// Throws the UserError for a type without an element.
+[[noreturn]] void throw_no_reference_element(CellType type, std::span<const CellType> allowed);
+
+template <const auto&... elements>
+[[noreturn]] void no_reference_element(CellType type, ReferenceElements<elements...> /*known*/) {
+  throw_no_reference_element(type, std::array{elements.type...});
+}
+
+template <class Visitor, const auto& first, const auto&... rest>
+auto visit_element(CellType type, Visitor& visit, ReferenceElements<first, rest...> /*candidates*/) {
+  if (type == first.type) return visit(first);
+  if constexpr (sizeof...(rest) > 0) {
+    return visit_element(type, visit, ReferenceElements<rest...>{});
+  } else {
+    no_reference_element(type, AllReferenceElements{});
   }
-  throw UserError("cells of type " + std::string(name_of(type)) +
-                  " cannot be simulated yet; allowed are tet4 and hex8");
+}
+
+}  // namespace detail
+
+/// Calls `visit` with the reference element of `type` and returns its answer. Throws UserError for types
+/// without one.
+template <class Visitor>
+auto with_reference_element(CellType type, Visitor&& visit) {
+  return detail::visit_element(type, visit, AllReferenceElements{});
 }
 
 }  // namespace evert
