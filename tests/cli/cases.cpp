@@ -48,7 +48,7 @@ const std::vector<Case> good_runs{
      .exit_code = 0},
     {.name = "check", .command = "check scene.yaml", .files = {scene()}, .exit_code = 0, .says = {"48"}},
     {.name = "quiet", .command = "run scene.yaml -quiet", .files = {scene()}, .exit_code = 0},
-    {.name = "version", .command = "-version", .exit_code = 0, .says = {"evert "}},
+    {.name = "version", .command = "--version", .exit_code = 0, .says = {"evert "}},
     {.name = "help", .command = "-help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
     {.name = "explain",
      .command = "explain bodies.material.poissons_ratio",
