@@ -1,0 +1,29 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evert {
+
+/// The arguments of `evert run`, taken apart: ours, and what goes to PETSc's options database.
+struct RunArguments {
+  std::string scene;                   ///< path of the scene file
+  std::vector<std::string> overrides;  ///< of each -set path=value, in order
+  std::string restart;                 ///< -restart file, or empty
+  std::string output;                  ///< -output directory, or empty: as in the scene
+  bool quiet = false;                  ///< -quiet
+  bool allow_unknown_options = false;  ///< -allow_unknown_options
+  bool help = false;                   ///< -help: what can be set, then stop
+  std::vector<std::string> petsc;      ///< everything else, in order
+};
+
+/// Takes the arguments after `evert run` apart; options may be written with one dash or two. Throws UserError when a value is missing
+/// or there is not exactly one scene.
+[[nodiscard]] RunArguments parse_run_arguments(std::span<const std::string> arguments);
+
+/// What `evert --help` prints.
+[[nodiscard]] std::string usage();
+/// What `evert run -help` prints before PETSc's own options.
+[[nodiscard]] std::string run_usage();
+
+}  // namespace evert

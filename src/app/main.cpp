@@ -1,0 +1,114 @@
+// The program: hands each subcommand its arguments, and turns what it throws into one line and an exit code.
+#include <petscsys.h>
+
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "evert/app/check_command.hpp"
+#include "evert/app/command_line.hpp"
+#include "evert/app/explain_command.hpp"
+#include "evert/app/mesh_command.hpp"
+#include "evert/app/run_command.hpp"
+#include "evert/core/collective.hpp"
+#include "evert/core/error.hpp"
+#include "evert/core/log.hpp"
+#include "evert/core/petsc.hpp"
+#include "evert/core/version.hpp"
+
+namespace {
+
+using Arguments = std::vector<std::string>;
+using SerialCommand = std::function<int(const Arguments&)>;
+
+enum ExitCode { done = 0, bug = 1, bad_input = 2, simulation_failed = 3 };
+
+/// One line on stderr, from one rank.
+void complain(const std::string& message) {
+  if (evert::rank_of(MPI_COMM_WORLD) != 0) return;
+  std::cout.flush();
+  std::fprintf(stderr, "evert: %s\n", message.c_str());
+}
+
+/// Commands that need no other ranks run on rank 0; the others wait for its exit code.
+int on_rank_zero(const SerialCommand& command, const Arguments& arguments) {
+  int code = done;
+  evert::on_root(MPI_COMM_WORLD, [&] { code = command(arguments); });
+  MPI_Bcast(&code, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return code;
+}
+
+int dispatch(const std::string& command, const Arguments& arguments) {
+  const std::map<std::string, SerialCommand> serial{
+      {"check", [](const Arguments& rest) { return evert::check_command(rest, std::cout); }},
+      {"explain", [](const Arguments& rest) { return evert::explain_command(rest, std::cout); }},
+      {"mesh", [](const Arguments& rest) { return evert::mesh_command(rest, std::cout); }},
+  };
+  if (command == "run") return evert::run_command(MPI_COMM_WORLD, evert::parse_run_arguments(arguments));
+  if (const auto found = serial.find(command); found != serial.end()) return on_rank_zero(found->second, arguments);
+  std::vector<std::string> names{"run"};
+  for (const auto& [name, function] : serial) names.push_back(name);
+  throw evert::UserError("there is no command '" + command + "': must be " + evert::list_of(names) +
+                         evert::did_you_mean(command, names));
+}
+
+int guarded(const std::string& command, const Arguments& arguments) {
+  try {
+    return dispatch(command, arguments);
+  } catch (const evert::UserError& error) {
+    complain(error.what());
+    return bad_input;
+  } catch (const evert::SimulationError& error) {
+    complain(std::string("the simulation failed: ") + error.what());
+    return simulation_failed;
+  } catch (const std::exception& error) {
+    // Other ranks may be waiting inside a collective call: there is no way back.
+    std::fprintf(stderr, "evert: bug: rank %d: %s\n", evert::rank_of(MPI_COMM_WORLD), error.what());
+    MPI_Abort(MPI_COMM_WORLD, bug);
+    return bug;
+  }
+}
+
+/// PETSc sees its own options only; a command line that cannot be taken apart is left to the command to complain about.
+Arguments petsc_options(const std::string& command, const Arguments& arguments) {
+  if (command != "run") return {};
+  try {
+    return evert::parse_run_arguments(arguments).petsc;
+  } catch (const evert::UserError&) {
+    return {};
+  }
+}
+
+int initialize_petsc(const char* program, Arguments options, const char* help) {
+  std::vector<char*> argv{const_cast<char*>(program)};
+  for (auto& option : options) argv.push_back(option.data());
+  argv.push_back(nullptr);
+  int argc = static_cast<int>(argv.size()) - 1;
+  char** pointer = argv.data();
+  return PetscInitialize(&argc, &pointer, nullptr, help);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments(argv + 1, argv + argc);
+  const std::string command = arguments.empty() ? "--help" : arguments.front();
+  if (command == "--help" || command == "-help" || command == "-h" || command == "help") {
+    std::cout << evert::usage();
+    return done;
+  }
+  if (command == "--version" || command == "-version") {
+    std::cout << "evert " << evert::version() << '\n';
+    return done;
+  }
+  arguments.erase(arguments.begin());
+  const auto help = evert::run_usage();
+  if (initialize_petsc(argv[0], petsc_options(command, arguments), help.c_str()) != 0) return bug;
+  evert::register_log_events();
+  const int code = guarded(command, arguments);
+  std::cout.flush();
+  return PetscFinalize() == 0 ? code : bug;
+}

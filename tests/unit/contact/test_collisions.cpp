@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "evert/contact/collisions.hpp"
+#include "evert/math/nodal.hpp"
+
+namespace evert {
+namespace {
+
+constexpr StepInterval step{0.1, 0.1};
+
+/// One node of mass 2 over the ground y = 0.
+struct OneNode {
+  explicit OneNode(double friction, const Vec3d& ground_velocity = {}) : collisions(ground(friction, ground_velocity), mass) {}
+
+  static std::vector<std::unique_ptr<Obstacle>> ground(double friction, const Vec3d& velocity) {
+    std::vector<std::unique_ptr<Obstacle>> obstacles;
+    obstacles.push_back(std::make_unique<HalfSpace>("ground", friction, Vec3d{}, Vec3d{{0, 1, 0}}, velocity));
+    return obstacles;
+  }
+  void resolve(std::span<const NodeConstraint> prescribed = {}) { collisions.resolve(x, v, predicted, prescribed, step); }
+
+  std::vector<double> mass{2.0};
+  std::vector<double> x{0, -0.01, 0}, v{1, -3, 0}, predicted{1, -3, 0};
+  Collisions collisions;
+};
+
+TEST(Collisions, LeaveNodesOutsideAlone) {
+  OneNode node(0.5);
+  node.x = {0, 1e-12, 0};
+  const auto before = node.x;
+  node.resolve();
+  EXPECT_EQ(node.x, before);
+  EXPECT_EQ(node.collisions.contacts(), 0);
+}
+
+TEST(Collisions, MoveToTheSurfaceAndStopTheNormalVelocity) {
+  OneNode node(0);
+  node.resolve();
+  EXPECT_DOUBLE_EQ(node.x[1], 0);
+  EXPECT_DOUBLE_EQ(node.x[0], 0);
+  EXPECT_DOUBLE_EQ(node.v[1], 0);
+  EXPECT_DOUBLE_EQ(node.v[0], 1) << "no friction";
+  ASSERT_EQ(node.collisions.contacts(), 1);
+  EXPECT_DOUBLE_EQ(node.collisions.impulse()[1], 2 * 3);
+}
+
+TEST(Collisions, KeepASeparatingVelocity) {
+  OneNode node(0.5);
+  node.v = {1, 4, 0};
+  node.resolve();
+  EXPECT_EQ(node.v[1], 4);
+  EXPECT_EQ(node.v[0], 1) << "no normal impulse, no friction";
+  EXPECT_EQ(node.collisions.constraints().front().prescribed[1], 4);
+}
+
+TEST(Collisions, ImpactFrictionIsCoulombs) {
+  OneNode node(0.2);
+  node.resolve();
+  EXPECT_NEAR(node.v[0], 1 - 0.2 * 3, 1e-15);
+  OneNode sticking(0.4);
+  sticking.resolve();
+  EXPECT_EQ(sticking.v[0], 0) << "never reverses";
+}
+
+TEST(Collisions, PositionFrictionFollowsTheDepth) {
+  OneNode node(0.2);  // depth 0.01 over 0.1 s: a change of 0.1 m/s, friction 0.02 m/s, over 0.1 s
+  node.resolve();
+  EXPECT_NEAR(node.x[0], -0.1 * 0.02, 1e-16);
+}
+
+TEST(Collisions, FollowAMovingBody) {
+  OneNode node(10, {{5, 2, 0}});
+  node.x[1] = 0.1;  // the plane stands at 0.2 at the end of the step
+  node.resolve();
+  EXPECT_DOUBLE_EQ(node.x[1], 0.2);
+  EXPECT_DOUBLE_EQ(node.v[1], 2);
+  EXPECT_DOUBLE_EQ(node.v[0], 5) << "carried along by the belt";
+}
+
+TEST(Collisions, ReactionFrictionIsCoulombsToo) {
+  OneNode node(0.25);
+  node.v = {1, 0, 0};
+  node.resolve();
+  const std::vector<double> reaction{0, 2 * 2.0, 0};  // a change of 2 m/s
+  node.collisions.apply_friction(node.v, reaction);
+  EXPECT_NEAR(node.v[0], 1 - 0.25 * 2, 1e-15);
+  const std::vector<double> pull{0, -4.0, 0};
+  node.collisions.apply_friction(node.v, pull);
+  EXPECT_NEAR(node.v[0], 0.5, 1e-15) << "adhesion rubs nothing";
+}
+
+TEST(Collisions, FixedNodesPassThrough) {
+  OneNode node(0.5);
+  const std::vector<NodeConstraint> fixed{{0, Mat3d{}, Vec3d{}}};
+  node.resolve(fixed);
+  EXPECT_EQ(node.collisions.contacts(), 0);
+  EXPECT_DOUBLE_EQ(node.x[1], -0.01);
+}
+
+TEST(Collisions, InACornerBothNormalsAreHeld) {
+  std::vector<std::unique_ptr<Obstacle>> obstacles = OneNode::ground(0, {});
+  obstacles.push_back(std::make_unique<HalfSpace>("wall", 0, Vec3d{}, Vec3d{{1, 0, 0}}));
+  const std::vector<double> mass{1.0};
+  Collisions collisions(std::move(obstacles), mass);
+  std::vector<double> x{-0.1, -0.1, 0}, v{-1, -1, 1};
+  const auto predicted = v;
+  collisions.resolve(x, v, predicted, {}, step);
+  EXPECT_EQ(x, (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(v, (std::vector<double>{0, 0, 1}));
+  ASSERT_EQ(collisions.constraints().size(), 1U);
+  const auto p = collisions.constraints().front().free;
+  EXPECT_NEAR(norm(p - diagonal(Vec3d{{0, 0, 1}})), 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace evert

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include "evert/contact/prescribed_motion.hpp"
+
+namespace evert {
+namespace {
+
+TEST(PrescribedMotion, InterpolatesItsKeyframes) {
+  PrescribedNodes group;
+  group.nodes = {2, 7};
+  group.keyframes = {{1, {{0, 0, 0}}}, {2, {{4, 0, 0}}}};
+  PrescribedMotion motion({group});
+  EXPECT_EQ(motion.at(0).front().prescribed[0], 0);
+  EXPECT_DOUBLE_EQ(motion.at(1.25).front().prescribed[0], 1);
+  EXPECT_EQ(motion.at(9).back().prescribed[0], 4);
+  EXPECT_EQ(motion.at(9).back().node, 7);
+  EXPECT_EQ(motion.at(9).back().free, Mat3d{});
+}
+
+TEST(PrescribedMotion, LeavesUnnamedAxesAndTimesFree) {
+  PrescribedNodes group;
+  group.nodes = {0};
+  group.keyframes = {{0, {{1, 2, 3}}}};
+  group.axes = {false, true, false};
+  group.from = 1;
+  group.until = 2;
+  PrescribedMotion motion({group});
+  EXPECT_TRUE(motion.at(0.5).empty());
+  EXPECT_TRUE(motion.at(2.5).empty());
+  const auto constraint = motion.at(1.5).front();
+  EXPECT_EQ(constraint.prescribed, (Vec3d{{0, 2, 0}}));
+  EXPECT_EQ(constraint.free(0, 0), 1);
+  EXPECT_EQ(constraint.free(1, 1), 0);
+}
+
+TEST(PrescribedMotion, OfTwoGroupsTheFirstWinsPerComponent) {
+  PrescribedNodes first, second;
+  first.nodes = second.nodes = {3};
+  first.axes = {true, false, false};
+  first.keyframes = {{0, {{1, 1, 1}}}};
+  second.keyframes = {{0, {{9, 8, 7}}}};
+  PrescribedMotion motion({first, second});
+  ASSERT_EQ(motion.at(0).size(), 1U);
+  const auto prescribed = motion.at(0).front().prescribed;
+  EXPECT_NEAR(norm(prescribed - Vec3d{{1, 8, 7}}), 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace evert
