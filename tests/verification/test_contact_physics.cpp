@@ -1,0 +1,121 @@
+// Friction and bounces against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/scenes.hpp"
+
+namespace evert {
+namespace {
+
+/// A stiff block on a plane tilted by `angle` [rad]: gravity is tilted instead of the plane.
+BuiltScene block_on_slope(double angle, double friction) {
+  const double g = 9.81;
+  const std::string yaml = R"(
+name: slope
+end_time: 1
+gravity: [)" + std::to_string(g * std::sin(angle)) + ", " + std::to_string(-g * std::cos(angle)) +
+                           R"(, 0]
+bodies:
+  block:
+    mesh: {generate: box, min: [-0.1, 0, -0.1], max: [0.1, 0.05, 0.1], cells: [4, 1, 4], cell: tet6}
+    density: 1000
+    material: {model: neo_hookean, youngs_modulus: 1.0e6, poissons_ratio: 0.3}
+    damping: {model: rotated, stiffness_proportional: 5.0e-3}
+obstacles:
+  plane: {shape: half_space, normal: [0, 1, 0], friction: )" +
+                           std::to_string(friction) + "}\n";
+  return test::build(yaml);
+}
+
+double run_until(Simulation& simulation, double end) {
+  while (simulation.time() < end) {
+    const double steps = std::ceil((end - simulation.time()) / simulation.suggested_time_step() - 1e-9);
+    steps <= 1 ? simulation.step_to(end) : simulation.step((end - simulation.time()) / steps);
+  }
+  return simulation.time();
+}
+
+double mean_velocity_along_slope(const Simulation& simulation) {
+  const auto now = simulation.measure();
+  return now.momentum[0] / (1000 * 0.2 * 0.05 * 0.2);
+}
+
+TEST(Friction, SlidesWithCoulombsAcceleration) {
+  const double friction = 0.3;
+  for (const double degrees : {20.0, 30.0, 45.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    auto scene = block_on_slope(angle, friction);
+    auto& simulation = *scene.simulation;
+    const double begin = run_until(simulation, 0.3);
+    const double before = mean_velocity_along_slope(simulation);
+    const double end = run_until(simulation, 0.8);
+    const double acceleration = (mean_velocity_along_slope(simulation) - before) / (end - begin);
+    const double expected = 9.81 * (std::sin(angle) - friction * std::cos(angle));
+    EXPECT_NEAR(acceleration / expected, 1, 0.01) << degrees << " degrees";
+  }
+}
+
+TEST(Friction, SticksBelowTheCoulombAngle) {
+  const double friction = 0.3;
+  auto scene = block_on_slope(std::atan(friction) * 0.95, friction);
+  auto& simulation = *scene.simulation;
+  run_until(simulation, 1.0);  // the block settles on its springs
+  const auto settled = test::gathered(simulation.mesh(), simulation.positions());
+  run_until(simulation, 3.0);
+  const auto later = test::gathered(simulation.mesh(), simulation.positions());
+  EXPECT_LE(test::largest_difference(settled, later), 1e-6) << "no creep";
+}
+
+TEST(Friction, ImpulsesBalanceTheMomentum) {
+  auto scene = block_on_slope(0.5, 0.3);
+  auto& simulation = *scene.simulation;
+  const auto start = simulation.measure();
+  run_until(simulation, 0.5);
+  const auto now = simulation.measure();
+  const auto gained = now.momentum - start.momentum;
+  const auto received = now.gravity_impulse + now.contact_impulse + now.constraint_impulse;
+  EXPECT_LE(norm(gained - received), 1e-8 * norm(now.gravity_impulse));
+}
+
+TEST(Bounce, LosesHeightEveryTimeAndNeverGainsEnergy) {
+  auto scene = test::build(R"(
+name: bounce
+end_time: 3
+gravity: [0, -9.81, 0]
+bodies:
+  ball:
+    mesh: {generate: ball, radius: 0.2, edge_length: 0.1}
+    transform: {translate: [0, 0.7, 0]}
+    density: 1000
+    material: {model: neo_hookean, youngs_modulus: 2.0e5, poissons_ratio: 0.3}
+    damping: {model: objective, stiffness_proportional: 1.0e-3}
+obstacles:
+  ground: {shape: half_space, normal: [0, 1, 0], friction: 0}
+)");
+  auto& simulation = *scene.simulation;
+  const auto total = [](const Measurements& m) { return m.kinetic_energy + m.elastic_energy + m.gravitational_energy; };
+  const auto start = simulation.measure();
+  const double scale = start.gravitational_energy;
+  double energy = total(start);
+  double previous_velocity = 0;
+  double last_apex = std::numeric_limits<double>::infinity();
+  int bounces = 0;
+  while (simulation.time() < 3.0) {
+    simulation.step(std::min(simulation.suggested_time_step(), 2e-3));
+    const auto now = simulation.measure();
+    EXPECT_LE(total(now), energy + 1e-3 * scale) << "at t = " << simulation.time();
+    energy = std::min(energy, total(now));
+    if (previous_velocity > 0 && now.momentum[1] <= 0) {  // an apex
+      EXPECT_LT(now.gravitational_energy, last_apex * (1 + 1e-9));
+      last_apex = now.gravitational_energy;
+      ++bounces;
+    }
+    previous_velocity = now.momentum[1];
+  }
+  EXPECT_GE(bounces, 2);
+}
+
+}  // namespace
+}  // namespace evert

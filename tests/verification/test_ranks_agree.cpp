@@ -1,0 +1,65 @@
+// The same scene on any number of ranks, twice, and restarted: the same answer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.hpp"
+
+namespace evert {
+namespace {
+
+const std::string falling_ball = R"(
+name: falling ball
+end_time: 1
+gravity: [0, -9.81, 0]
+bodies:
+  ball:
+    mesh: {generate: ball, radius: 0.2, edge_length: 0.08}
+    transform: {translate: [0, 0.22, 0]}
+    density: 1000
+    velocity: [1, -3, 0]
+    spin: [0, 0, 4]
+    material: {model: neo_hookean, youngs_modulus: 5.0e4, poissons_ratio: 0.4}
+    damping: {model: rotated, stiffness_proportional: 1.0e-3}
+obstacles:
+  ground: {shape: half_space, normal: [0, 1, 0], friction: 0.4}
+  bump: {shape: sphere, center: [0.1, 0, 0.05], radius: 0.05, friction: 0.1}
+events:
+  - {at: 0.02, set: bodies.ball.material.youngs_modulus, to: 8.0e4}
+)";
+
+std::vector<double> after_steps(Simulation& simulation, int steps) {
+  for (int step = 0; step < steps; ++step) simulation.step(simulation.suggested_time_step());
+  return test::gathered(simulation.mesh(), simulation.positions());
+}
+
+TEST(RanksAgree, PositionsAfter200StepsEqualThoseOfOneRank) {
+  const auto alone = after_steps(*test::build(falling_ball, {}, PETSC_COMM_SELF).simulation, 200);
+  auto scene = test::build(falling_ball);
+  const auto together = after_steps(*scene.simulation, 200);
+  EXPECT_LE(test::largest_difference(alone, together), 1e-9 * 0.4);
+  EXPECT_GT(norm(scene.simulation->measure().contact_impulse), 0) << "the scene must collide";
+}
+
+TEST(RanksAgree, TwoRunsAreBitwiseEqual) {
+  EXPECT_EQ(after_steps(*test::build(falling_ball).simulation, 100),
+            after_steps(*test::build(falling_ball).simulation, 100));
+}
+
+TEST(RanksAgree, ARestoredRunIsBitwiseEqual) {
+  auto whole = test::build(falling_ball);
+  after_steps(*whole.simulation, 37);
+  const auto& running = *whole.simulation;
+  const std::vector<double> x(running.positions().owned().begin(), running.positions().owned().end());
+  const std::vector<double> v(running.velocities().owned().begin(), running.velocities().owned().end());
+  const auto scalars = running.state_scalars();
+  const auto uninterrupted = after_steps(*whole.simulation, 100);
+
+  auto restarted = test::build(falling_ball);
+  restarted.simulation->restore(x, v, scalars);
+  EXPECT_EQ(restarted.simulation->steps(), 37);
+  EXPECT_EQ(after_steps(*restarted.simulation, 100), uninterrupted);
+}
+
+}  // namespace
+}  // namespace evert
