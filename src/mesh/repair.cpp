@@ -1,0 +1,110 @@
+#include "evert/mesh/repair.hpp"
+
+#include "evert/core/error.hpp"
+#include "evert/mesh/cell_geometry.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace evert {
+namespace {
+
+/// Cells with something wrong: how many, and the first few.
+struct Offenders {
+  GlobalIndex count = 0;
+  std::vector<GlobalIndex> first;
+
+  void add(GlobalIndex cell) {
+    constexpr std::size_t shown = 5;
+    if (first.size() < shown) first.push_back(cell);
+    ++count;
+  }
+  /// "3 of 10 cells are flat (cells 0, 4, 5)"
+  [[nodiscard]] std::string text(GlobalIndex cells, const std::string& fault) const {
+    std::string numbers;
+    for (const auto cell : first) numbers += (numbers.empty() ? "" : ", ") + std::to_string(cell);
+    if (count > static_cast<GlobalIndex>(first.size())) numbers += ", ...";
+    return std::to_string(count) + " of " + std::to_string(cells) + " cells " + fault +
+           " (counted from 0: " + numbers + ")";
+  }
+};
+
+/// Mirrors a cell by renumbering its nodes.
+void mirror(CellType type, std::span<GlobalIndex> nodes) {
+  switch (type) {
+    case CellType::tet4:
+      std::swap(nodes[2], nodes[3]);
+      break;
+    case CellType::hex8:
+      std::swap_ranges(nodes.begin(), nodes.begin() + 4, nodes.begin() + 4);
+      break;
+    case CellType::wedge6:
+      std::swap_ranges(nodes.begin(), nodes.begin() + 3, nodes.begin() + 3);
+      break;
+    case CellType::tet10:
+      std::swap(nodes[2], nodes[3]);
+      std::swap(nodes[6], nodes[7]);  // edges 0-2 and 0-3
+      std::swap(nodes[5], nodes[8]);  // edges 1-2 and 1-3
+      break;
+  }
+}
+
+}  // namespace
+
+void require_positive_volumes(const Mesh& mesh, const std::string& what) {
+  Offenders negative;
+  Offenders broken;
+  for_each_cell(mesh,
+                [&](GlobalIndex cell, const CellBlock& block, std::size_t, std::span<const Vec3d> nodes) {
+                  const auto determinants = jacobian_range(block.type, nodes);
+                  if (determinants.smallest > flat_jacobian) return;
+                  const bool mirrored = determinants.largest < -flat_jacobian;
+                  (mirrored ? negative : broken).add(cell);
+                });
+  if (broken.count > 0)
+    throw UserError(what + ": " + broken.text(mesh.cell_count(), "are flat or folded") +
+                    "; all must have positive volume at each quadrature point, so mesh that part again");
+  if (negative.count > 0)
+    throw UserError(
+        what + ": " + negative.text(mesh.cell_count(), "have negative volume") +
+        ", their nodes are in mirrored order; run 'evert mesh convert in out -reorient' to mend it");
+}
+
+GlobalIndex reorient(Mesh& mesh) {
+  std::vector<std::pair<CellType, std::size_t>> negative;
+  for_each_cell(mesh, [&](GlobalIndex, const CellBlock& block, std::size_t i, std::span<const Vec3d> nodes) {
+    if (cell_volume(block.type, nodes) < 0) negative.emplace_back(block.type, i);
+  });
+  for (const auto& [type, i] : negative) {
+    const auto stride = static_cast<std::size_t>(node_count(type));
+    auto& block = *std::ranges::find(mesh.cells, type, &CellBlock::type);
+    mirror(type, std::span(block.nodes).subspan(stride * i, stride));
+  }
+  return static_cast<GlobalIndex>(negative.size());
+}
+
+GlobalIndex drop_unused_nodes(Mesh& mesh) {
+  std::vector<GlobalIndex> new_number(mesh.nodes.size(), -1);
+  for (const auto& block : mesh.cells)
+    for (const auto node : block.nodes) new_number[static_cast<std::size_t>(node)] = 0;
+  GlobalIndex kept = 0;
+  for (std::size_t node = 0; node < new_number.size(); ++node) {
+    if (new_number[node] < 0) continue;
+    mesh.nodes[static_cast<std::size_t>(kept)] = mesh.nodes[node];
+    new_number[node] = kept++;
+  }
+  const auto dropped = mesh.node_count() - kept;
+  if (dropped == 0) return 0;
+  mesh.nodes.resize(static_cast<std::size_t>(kept));
+  const auto renumber = [&](GlobalIndex node) { return new_number[static_cast<std::size_t>(node)]; };
+  for (auto& block : mesh.cells) std::ranges::transform(block.nodes, block.nodes.begin(), renumber);
+  for (auto& set : mesh.node_sets) {
+    std::ranges::transform(set.nodes, set.nodes.begin(), renumber);
+    std::erase(set.nodes, -1);
+  }
+  return dropped;
+}
+
+}  // namespace evert
