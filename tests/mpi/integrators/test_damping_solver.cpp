@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "evert/core/collective.hpp"
+#include "evert/core/error.hpp"
+#include "evert/integrators/damping_solver.hpp"
+#include "evert/math/nodal.hpp"
+#include "evert/mesh/generators.hpp"
+
+namespace evert {
+namespace {
+
+/// An option in PETSc's database for the life of the object.
+class Option {
+ public:
+  Option(std::string name, const std::string& value) : name_(std::move(name)) {
+    check(PetscOptionsSetValue(nullptr, name_.c_str(), value.c_str()));
+  }
+  ~Option() { static_cast<void>(PetscOptionsClearValue(nullptr, name_.c_str())); }
+  Option(const Option&) = delete;
+  Option& operator=(const Option&) = delete;
+
+ private:
+  std::string name_;
+};
+
+/// A deformed, damped box and a velocity; the same for any number of ranks.
+class DampedBox : public testing::Test {
+ protected:
+  DampedBox() {
+    for (LocalIndex i = 0; i < mesh_.local_nodes(); ++i) {
+      const auto rest = mesh_.rest_positions[static_cast<std::size_t>(i)];
+      const Vec3d wave{std::sin(3 * rest[1]), 0.2 * std::cos(5 * rest[2]), 0.3 * std::sin(4 * rest[0])};
+      set_node_value(x_.local(), i, rest + 0.3 * wave);
+      set_node_value(v_.local(), i, {std::cos(7 * rest[2]), std::sin(5 * rest[0]), std::cos(rest[1])});
+    }
+    x_.touched();
+    v_.touched();
+    elastic_.update(x_, f_);
+    check(VecDuplicate(v_.vec(), right_.out()));
+    check(VecCopy(v_.vec(), right_.get()));
+    check(VecScale(right_.get(), 3.0));
+  }
+
+  /// Every third node may not move along a slanted normal; node 0 of each rank is held altogether.
+  [[nodiscard]] std::vector<NodeConstraint> constraints() const {
+    std::vector<NodeConstraint> list;
+    if (mesh_.owned_nodes > 0) list.push_back({0, Mat3d{}, {{1, 2, 3}}});
+    const Vec3d n{{0.6, 0, 0.8}};
+    for (LocalIndex i = 3; i < mesh_.owned_nodes; i += 3) list.push_back({i, projector_off(std::array{n}), 0.5 * n});
+    return list;
+  }
+
+  /// ‖P (b − (M + s C) v)‖ over all ranks.
+  double residual_norm(DampingSolver& solver, double s, std::span<const NodeConstraint> held) {
+    VecHandle left;
+    check(VecDuplicate(right_.get(), left.out()));
+    check(VecCopy(right_.get(), left.get()));
+    PetscScalar* values = nullptr;
+    check(VecGetArray(left.get(), &values));
+    const auto size = v_.owned().size();
+    for (std::size_t i = 0; i < size; ++i) values[i] -= elastic_.masses()[i / 3] * v_.owned()[i];
+    check(VecRestoreArray(left.get(), &values));
+    solver.add_damping(v_.vec(), left.get(), -s);
+    check(VecGetArray(left.get(), &values));
+    project(held, {values, size});
+    check(VecRestoreArray(left.get(), &values));
+    PetscReal norm = 0;
+    check(VecNorm(left.get(), NORM_2, &norm));
+    return norm;
+  }
+
+  DistributedMesh mesh_ =
+      distribute(PETSC_COMM_WORLD, generate_box({{1, 0.5, 0.5}}, {4, 2, 2}, BoxCells::tet6));
+  Lame lame_ = Lame::from_young_poisson(1e4, 0.4);
+  std::vector<ElasticProperties> properties_{
+      {1000, NeoHookean{lame_}, Damping::stiffness_proportional(DampingModel::rotated, 0.05, lame_.lambda, lame_.mu)}};
+  ElasticForces elastic_{mesh_, properties_};
+  NodeField x_{mesh_}, v_{mesh_}, f_{mesh_};
+  VecHandle right_;
+};
+
+struct Choice {
+  const char* mat_type;
+  const char* pc_type;
+};
+
+class EveryOperator : public DampedBox, public testing::WithParamInterface<Choice> {};
+
+TEST_P(EveryOperator, SolvesWithTheConstraintsHeldExactly) {
+  const Option mat("-damping_mat_type", GetParam().mat_type);
+  const Option pc("-damping_pc_type", GetParam().pc_type);
+  const Option tolerance("-damping_ksp_rtol", "1e-11");
+  DampingSolver solver(mesh_, elastic_);
+  const auto held = constraints();
+  const double s = 0.01;
+  const double before = [&] {
+    PetscReal norm = 0;
+    check(VecNorm(right_.get(), NORM_2, &norm));
+    return norm;
+  }();
+  const int iterations = solver.solve(s, right_.get(), v_, held);
+  EXPECT_GT(iterations, 0);
+  EXPECT_LE(residual_norm(solver, s, held), 1e-9 * before);
+  for (const auto& c : held) {
+    const auto v = node_value(v_.owned(), c.node);
+    EXPECT_LE(norm(v - c.free * v - c.prescribed), 1e-12);
+  }
+}
+
+TEST_P(EveryOperator, SolvesAgainAfterTheMaterialMoved) {
+  const Option mat("-damping_mat_type", GetParam().mat_type);
+  const Option pc("-damping_pc_type", GetParam().pc_type);
+  const Option tolerance("-damping_ksp_rtol", "1e-11");
+  DampingSolver solver(mesh_, elastic_);
+  solver.solve(0.01, right_.get(), v_, {});
+  for (auto& value : x_.owned()) value *= 1.3;
+  x_.touched();
+  elastic_.update(x_, f_);
+  solver.invalidate();
+  solver.solve(0.02, right_.get(), v_, {});
+  EXPECT_LE(residual_norm(solver, 0.02, {}), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryOperator,
+                         testing::Values(Choice{"shell", "pbjacobi"}, Choice{"shell", "jacobi"}, Choice{"shell", "none"},
+                                         Choice{"baij", "pbjacobi"}, Choice{"baij", "bjacobi"}, Choice{"aij", "gamg"},
+                                         Choice{"sbaij", "jacobi"}, Choice{"sbaij", "bjacobi"}, Choice{"aij", "bjacobi"}),
+                         [](const auto& info) {
+                           return std::string(info.param.mat_type) + "_" + info.param.pc_type;
+                         });
+
+TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
+  const Option tolerance("-damping_ksp_rtol", "1e-13");
+  DampingSolver solver(mesh_, elastic_);
+  const auto held = constraints();
+  solver.solve(0.01, right_.get(), v_, held);
+  const auto reaction = solver.reaction(0.01);
+  // Σ reactions = Σ (M v − b), since C takes nothing from the momentum.
+  Vec3d exerted{}, missing{};
+  for (const auto& c : held) {
+    const auto r = node_value(reaction, c.node);
+    exerted += r - c.free * r;
+  }
+  const PetscScalar* right = nullptr;
+  check(VecGetArrayRead(right_.get(), &right));
+  for (std::size_t i = 0; i < v_.owned().size(); ++i) missing[i % 3] += elastic_.masses()[i / 3] * v_.owned()[i] - right[i];
+  check(VecRestoreArrayRead(right_.get(), &right));
+  MPI_Allreduce(MPI_IN_PLACE, exerted.components.data(), 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, missing.components.data(), 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  EXPECT_GT(norm(exerted), 0.1);
+  EXPECT_LE(norm(exerted - missing), 1e-9 * norm(exerted));
+}
+
+TEST_F(DampedBox, WithoutDampingTheSolveIsADivision) {
+  properties_.front().damping = {};
+  ElasticForces undamped(mesh_, properties_);
+  DampingSolver solver(mesh_, undamped);
+  EXPECT_FALSE(solver.damped());
+  EXPECT_EQ(solver.solve(0.1, right_.get(), v_, {}), 0);
+  const PetscScalar* right = nullptr;
+  check(VecGetArrayRead(right_.get(), &right));
+  for (std::size_t i = 0; i < v_.owned().size(); ++i)
+    EXPECT_NEAR(v_.owned()[i], right[i] / undamped.masses()[i / 3], 1e-13 * std::abs(v_.owned()[i]) + 1e-13);
+  check(VecRestoreArrayRead(right_.get(), &right));
+}
+
+TEST_F(DampedBox, OptionsThatCannotWorkAreUserErrors) {
+  {
+    const Option mat("-damping_mat_type", "bajj");
+    EXPECT_THROW(DampingSolver(mesh_, elastic_), UserError);
+  }
+  const Option pc("-damping_pc_type", "gamg");
+  EXPECT_THROW(DampingSolver(mesh_, elastic_), UserError);
+}
+
+}  // namespace
+}  // namespace evert
