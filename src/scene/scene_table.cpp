@@ -12,7 +12,7 @@ const Table<OutputConfig>& output_table() {
       Table<OutputConfig>("What is written, and how often.")
           .optional(
               "directory", &OutputConfig::directory, text("path"), "runs/torus",
-              "Made when it does not exist; runs/<name> unless given. Relative to the working directory.")
+              "Made when it does not exist; runs/NAME unless given. Relative to the working directory.")
           .optional("frames_per_second", &OutputConfig::frames_per_second, number("1/s", above(0)), "30",
                     "Frames per simulated second; without it no frames are written.")
           .optional("fields", &OutputConfig::fields,
