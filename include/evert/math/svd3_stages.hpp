@@ -123,7 +123,6 @@ EVERT_ALWAYS_INLINE T largest_cubic_root(const T& g) {
 
 template <Real T>
 EVERT_ALWAYS_INLINE IsolatedRoot<T> isolated_root(const NormalizedSquare<T>& b) {
-  using Scalar = scalar_t<T>;
   const T inverse_spread = T(1) / sqrt(b.spread);
   const T cosine = b.half_determinant * (inverse_spread * inverse_spread * inverse_spread);
   const T root = largest_cubic_root(min(abs(cosine), T(1)));
@@ -152,7 +151,6 @@ EVERT_ALWAYS_INLINE Vec3<T> isolated_direction(const NormalizedSquare<T>& b,
 /// Duff et al. 2017, Building an orthonormal basis, revisited.
 template <Real T>
 EVERT_ALWAYS_INLINE Frame<T> frame_along(const Vec3<T>& direction) {
-  using Scalar = scalar_t<T>;
   const T one = T(1);
   const T length_squared = dot(direction, direction);
   const T length = sqrt(length_squared);
@@ -195,7 +193,6 @@ EVERT_ALWAYS_INLINE Vec3<T> left_direction(const Mat3<T>& images, const Frame<T>
 /// Stage 5. `left` is the frame [l e f]. What is neglected, [e f]ᵀ F w and lᵀ F [u v], is rounding of σ1.
 template <Real T>
 EVERT_ALWAYS_INLINE PlaneRemainder<T> plane_remainder(const Mat3<T>& images, const Frame<T>& left) {
-  using Scalar = scalar_t<T>;
   const auto& [fw, fu, fv] = images.column;
   const T m00 = dot(left.first, fu), m01 = dot(left.first, fv);
   const T m10 = dot(left.second, fu), m11 = dot(left.second, fv);
