@@ -25,6 +25,7 @@ class NaturalOrder {
     return first_;
   }  ///< natural number that this rank's slice begins with
   [[nodiscard]] std::size_t slice_size() const { return slice_size_; }
+  [[nodiscard]] std::size_t item_count() const { return item_count_; }  ///< of this rank
 
   /// `values`: `width` of them for each item of this rank. The result: as many for each item of the slice.
   template <class T>
