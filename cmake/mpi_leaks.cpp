@@ -1,8 +1,9 @@
-// Part of every executable of the sanitizer build: what Open MPI allocates while it starts and stops is not ours to
-// free. Done here through MPI's profiling interface, so that whatever we leak ourselves, be it through PETSc, is found:
-// a suppression by library would hide that.
-#include <dlfcn.h>
+// Part of every executable of the sanitizer build: what Open MPI allocates while it starts and stops is not
+// ours to free. Done here through MPI's profiling interface, so that whatever we leak ourselves, be it
+// through PETSc, is found: a suppression by library would hide that.
 #include <mpi.h>
+
+#include <dlfcn.h>
 #include <sanitizer/lsan_interface.h>
 
 // Also linked into programs that do without MPI.

@@ -1,9 +1,9 @@
 // Turns one tetrahedron inside out and asks the library for the energy [J] and for its sign.
+#include "evert/forces/elastic_block.hpp"
+
 #include <array>
 #include <cstdio>
 #include <vector>
-
-#include "evert/forces/elastic_block.hpp"
 
 int main() {
   const std::array<evert::LocalIndex, 4> nodes{0, 1, 2, 3};
@@ -15,6 +15,7 @@ int main() {
 
   std::vector<double> x{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1, 0};  // one double of slack
   const double energy = block->energy(x.data());
-  std::printf("inverted points: %d, energy: %g J\n", static_cast<int>(block->inverted_points(x.data())), energy);
+  std::printf("inverted points: %d, energy: %g J\n", static_cast<int>(block->inverted_points(x.data())),
+              energy);
   return block->inverted_points(x.data()) == 1 && energy > 0 ? 0 : 1;
 }
