@@ -1,0 +1,197 @@
+#include "evert/app/check_command.hpp"
+
+#include "evert/app/command_line.hpp"
+#include "evert/core/petsc.hpp"
+#include "evert/scene/build.hpp"
+#include "evert/scene/load.hpp"
+#include "evert/scene/petsc_options.hpp"
+
+#include <petscsys.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace evert {
+namespace {
+
+/// printf for strings: the report is a table of numbers.
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  std::array<char, 256> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+std::string vector_text(const Vec3d& v) { return formatted("(%g, %g, %g)", v[0], v[1], v[2]); }
+
+std::string duration_text(double seconds) {
+  if (seconds < 120) return formatted("%.2g s", seconds);
+  if (seconds < 7200) return formatted("%.0f min", seconds / 60);
+  return formatted("%.3g h", seconds / 3600);
+}
+
+std::string material_text(const MaterialConfig& material) {
+  const char* model = material.model == MaterialModel::neo_hookean      ? "neo_hookean"
+                      : material.model == MaterialModel::rotated_linear ? "rotated_linear"
+                                                                        : "st_venant_kirchhoff";
+  return formatted("%s, E %g Pa, nu %g", model, material.youngs_modulus, material.poissons_ratio);
+}
+
+std::string damping_text(const std::optional<DampingConfig>& damping) {
+  if (!damping || damping->model == DampingModel::none) return "undamped";
+  const std::string model = damping->model == DampingModel::rotated ? "rotated" : "objective";
+  if (damping->stiffness_proportional)
+    return model + formatted(" damping, stiffness-proportional %g s", *damping->stiffness_proportional);
+  return model + formatted(" damping, alpha %g, beta %g Pa s", damping->alpha, damping->beta);
+}
+
+/// Writes "title   text", the title only when it differs from the line before.
+class Report {
+ public:
+  explicit Report(std::ostream& out) : out_(out) {}
+
+  void line(const std::string& title, const std::string& text) {
+    out_ << formatted("%-13s", title == last_ ? "" : title.c_str()) << text << '\n';
+    last_ = title;
+  }
+
+ private:
+  std::ostream& out_;
+  std::string last_;
+};
+
+void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& built) {
+  const auto& mesh = built.simulation->mesh();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const auto& body = scene.bodies[b];
+    const auto& range = built.bodies[b];
+    report.line("bodies",
+                body.name + ": " +
+                    formatted("%lld nodes, box ", static_cast<long long>(range.end_node - range.first_node)) +
+                    vector_text(range.lower) + " to " + vector_text(range.upper) + " m");
+    report.line("bodies", formatted("  density %g kg/m^3, ", body.density) + material_text(body.material) +
+                              ", " + damping_text(body.damping));
+    for (const auto& group : body.groups)
+      report.line("bodies", "  " + group.name + ": " +
+                                formatted("density %g kg/m^3, ", group.density.value_or(body.density)) +
+                                material_text(group.material.value_or(body.material)) + ", " +
+                                damping_text(group.damping ? group.damping : body.damping));
+  }
+  for (const auto& cells : mesh.cells)
+    if (cells.size() > 0)
+      report.line("cells", formatted("%d %s in ", cells.size(), std::string(name_of(cells.type)).c_str()) +
+                               mesh.regions[static_cast<std::size_t>(cells.region)]);
+  const auto masses = built.simulation->elastic().masses();
+  report.line("mass", formatted("%.6g kg in all", std::accumulate(masses.begin(), masses.end(), 0.0)));
+}
+
+void report_surroundings(Report& report, const SceneConfig& scene, const DistributedMesh& mesh) {
+  for (const auto& obstacle : scene.obstacles) {
+    const bool plane = std::holds_alternative<HalfSpaceConfig>(obstacle.shape);
+    report.line("obstacles", obstacle.name + (plane ? ": half_space" : ": sphere") +
+                                 formatted(", friction %g", obstacle.friction));
+  }
+  for (std::size_t c = 0; c < scene.constraints.size(); ++c) {
+    const auto& constraint = scene.constraints[c];
+    report.line("constraints", formatted("%zu nodes of ", mesh.node_sets[c].owned.size()) +
+                                   constraint.body_name +
+                                   (constraint.fixed ? " are fixed" : " have a prescribed velocity"));
+  }
+  for (const auto& event : scene.events)
+    report.line("events", formatted("at %g s ", event.at) + event.set + " becomes " +
+                              (event.target == EventTarget::gravity ? vector_text(event.vector)
+                                                                    : formatted("%g", event.value)));
+}
+
+/// Wall seconds of one step on this rank; the first also sets the solvers up.
+double seconds_a_step(Simulation& simulation, double dt) {
+  simulation.step(dt);
+  const auto begin = std::chrono::steady_clock::now();
+  simulation.step(dt);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Gives the regions of an event's body what the scene says now. Regions are called "body" or "body.group".
+void set_regions(Simulation& simulation, const BodyConfig& body) {
+  const auto& regions = simulation.mesh().regions;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    int group = -1;
+    for (std::size_t g = 0; g < body.groups.size(); ++g)
+      if (regions[r] == body.name + "." + body.groups[g].name) group = static_cast<int>(g);
+    if (group >= 0 || regions[r] == body.name)
+      simulation.set_properties(static_cast<std::int32_t>(r), properties_of(body, group));
+  }
+}
+
+/// The automatic step between two events, as the initial state suggests it.
+struct Stretch {
+  double begin = 0;
+  double dt = 0;
+};
+
+std::vector<Stretch> time_steps(Simulation& simulation, SceneConfig scene) {
+  std::vector<Stretch> out{{0, std::min(simulation.suggested_time_step(), scene.end_time)}};
+  for (const auto& event : scene.events) {
+    if (event.at >= scene.end_time || event.target == EventTarget::gravity ||
+        event.target == EventTarget::friction)
+      continue;
+    apply_event(scene, event);
+    set_regions(simulation, scene.bodies[event.owner]);
+    out.push_back({event.at, std::min(simulation.suggested_time_step(), scene.end_time)});
+  }
+  return out;
+}
+
+void report_cost(Report& report, const SceneConfig& scene, Simulation& simulation) {
+  const auto stretches = time_steps(simulation, scene);
+  double steps = 0;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const double end = i + 1 < stretches.size() ? stretches[i + 1].begin : scene.end_time;
+    steps += std::ceil((end - stretches[i].begin) / stretches[i].dt);
+    report.line("time step",
+                formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
+                    (scene.integrator.time_step ? ", fixed" : ", automatic, as the initial state suggests"));
+  }
+  report.line("steps", formatted("about %.3g to the end time, %g s", steps, scene.end_time));
+  if (const auto rate = scene.output.frames_per_second)
+    report.line("frames", formatted("%.0f to ", std::floor(scene.end_time * *rate * (1 + 1e-12)) + 1) +
+                              scene.output.directory);
+  else
+    report.line("frames", "none: output.frames_per_second is not given");
+  const double step_seconds = seconds_a_step(simulation, stretches.back().dt);
+  PetscLogDouble resident = 0;
+  check(PetscMemoryGetCurrentUsage(&resident));
+  constexpr double mega = 1e6;
+  report.line("memory", formatted("%.1f MB, of which element data %.1f MB", resident / mega,
+                                  static_cast<double>(simulation.elastic().memory()) / mega));
+  report.line("cost", formatted("%.2g s a step on one rank, so about ", step_seconds) +
+                          duration_text(steps * step_seconds) + " without output");
+}
+
+}  // namespace
+
+int check_command(std::span<const std::string> arguments, std::ostream& out) {
+  const auto run = parse_run_arguments(arguments);
+  if (run.help) {
+    out << run_usage();
+    return 0;
+  }
+  const auto scene = load_scene(PETSC_COMM_SELF, run.scene, run.overrides);
+  apply_petsc_block(scene);
+  const auto built = build_scene(PETSC_COMM_SELF, scene);
+
+  Report report(out);
+  report.line("scene", scene.name + " (" + scene.file + ")");
+  report_bodies(report, scene, built);
+  report_surroundings(report, scene, built.simulation->mesh());
+  report_cost(report, scene, *built.simulation);
+  reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options);
+  report.line("valid", "nothing wrong was found");
+  return 0;
+}
+
+}  // namespace evert
