@@ -26,7 +26,9 @@ void MeshBuilder::add_cell(CellType type, std::span<const GlobalIndex> nodes, st
 }
 
 void MeshBuilder::add_to_node_set(const std::string& name, std::span<const GlobalIndex> nodes) {
-  auto& set = node_sets_[name];
+  const auto [entry, is_new] = node_set_numbers_.try_emplace(name, mesh_.node_sets.size());
+  if (is_new) mesh_.node_sets.push_back({name, {}});
+  auto& set = mesh_.node_sets[entry->second].nodes;
   set.insert(set.end(), nodes.begin(), nodes.end());
 }
 
@@ -41,10 +43,9 @@ Mesh MeshBuilder::finish(const std::string& file) && {
     for (const auto& [kind, count] : lower_cells_) found += ", " + std::to_string(count) + " " + kind;
     throw UserError(file + ": has no volume cells (tet4, hex8, wedge6 or tet10), only " + found);
   }
-  for (auto& [name, nodes] : node_sets_) {
-    std::ranges::sort(nodes);
-    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
-    mesh_.node_sets.push_back({name, std::move(nodes)});
+  for (auto& set : mesh_.node_sets) {
+    std::ranges::sort(set.nodes);
+    set.nodes.erase(std::ranges::unique(set.nodes).begin(), set.nodes.end());
   }
   return std::move(mesh_);
 }

@@ -35,7 +35,7 @@ class MeshBuilder {
   Mesh mesh_;
   std::array<CellBlock, all_cell_types.size()> blocks_;
   std::unordered_map<std::string, std::int32_t> region_numbers_;
-  std::map<std::string, std::vector<GlobalIndex>> node_sets_;
+  std::unordered_map<std::string, std::size_t> node_set_numbers_;
   std::map<std::string, GlobalIndex> lower_cells_;
 };
 
