@@ -18,7 +18,7 @@ using Attribute = Hdf5Handle<H5Aclose>;
 using Object = Hdf5Handle<H5Oclose>;
 using Group = Hdf5Handle<H5Gclose>;
 
-/// A call failed on this rank; becomes a UserError on all in Hdf5File::together.
+/// A call failed on this rank; becomes an Hdf5Error on all in Hdf5File::together.
 class Hdf5Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -209,13 +209,17 @@ void get(hid_t object, const std::string& name, T& value) {
 
 void Hdf5File::together(const std::string& verb, const std::function<void()>& work) const {
   const Silence silence;
-  std::string message;
+  std::string reason;
   try {
     work();
   } catch (const Hdf5Failure& failure) {
-    message = "cannot " + verb + " '" + path_ + "': " + failure.what();
+    reason = failure.what();
   }
-  agree_or_throw(comm_, message);
+  try {
+    agree_or_throw(comm_, reason);
+  } catch (const UserError& agreed) {
+    throw Hdf5Error("cannot " + verb + " '" + path_ + "'", agreed.what());
+  }
 }
 
 Hdf5File Hdf5File::create(MPI_Comm comm, const std::string& path) {

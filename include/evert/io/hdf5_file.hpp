@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/core/error.hpp"
 #include "evert/core/index.hpp"
 
 #include <hdf5.h>
@@ -14,6 +15,17 @@
 /// HDF5 files, owned and checked. Every error becomes a UserError with HDF5's own reason, on all ranks that
 /// share the file; HDF5 itself prints nothing.
 namespace evert {
+
+/// What Hdf5File throws: "cannot read 'run.h5': reason".
+class Hdf5Error : public UserError {
+ public:
+  Hdf5Error(const std::string& doing, std::string reason)
+      : UserError(doing + ": " + reason), reason_(std::move(reason)) {}
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
 
 /// Owns one HDF5 identifier.
 template <herr_t (*Close)(hid_t)>
@@ -54,7 +66,7 @@ struct TableShape {
 };
 
 /// A file of groups, tables and attributes, on one rank or shared by a communicator through MPI-IO. All calls
-/// are collective over that communicator and throw UserError on every rank when one fails on any.
+/// are collective over that communicator and throw Hdf5Error on every rank when one fails on any.
 class Hdf5File {
  public:
   /// Replaces what is at `path`.

@@ -1,0 +1,157 @@
+#include "evert/io/checkpoint.hpp"
+
+#include "evert/core/collective.hpp"
+#include "evert/core/log.hpp"
+#include "evert/io/files.hpp"
+#include "evert/io/hdf5_file.hpp"
+
+#include "digest.hpp"
+#include <bit>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace evert {
+namespace {
+
+const std::string format = "evert checkpoint";
+constexpr std::int64_t format_version = 1;
+constexpr std::int64_t metadata_allowance =
+    64 << 10;  // bytes besides the tables, the fingerprint and the scalars
+
+// Attributes hold signed integers.
+std::int64_t as_attribute(std::uint64_t digest) { return std::bit_cast<std::int64_t>(digest); }
+
+RowRange slice_of(const NaturalOrder& order) {
+  return {order.first(), static_cast<GlobalIndex>(order.slice_size())};
+}
+
+/// What can be said of a file without HDF5.
+void require_hdf5(const std::string& path) {
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  if (!std::filesystem::exists(path)) throw UserError("there is no checkpoint '" + path + "'");
+  if (!std::filesystem::is_regular_file(path)) throw UserError("checkpoint '" + path + "' is not a file");
+  std::string begin(signature.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(file.gcount()));
+  if (begin.size() < signature.size() && signature.starts_with(begin))
+    throw UserError("checkpoint '" + path + "' is truncated");
+  if (begin != signature) throw UserError("'" + path + "' is not a checkpoint of evert");
+}
+
+void require_format(const Hdf5File& file) {
+  std::string found;
+  try {
+    found = file.attribute<std::string>("/", "format");
+  } catch (const UserError&) {
+    found.clear();
+  }
+  if (found != format) throw UserError("'" + file.path() + "' is not a checkpoint of evert");
+  const auto version = file.attribute<std::int64_t>("/", "format_version");
+  if (version != format_version)
+    throw UserError("checkpoint '" + file.path() + "' has format version " + std::to_string(version) +
+                    ", this evert reads version " + std::to_string(format_version));
+}
+
+/// Throws UserError unless the file is a whole checkpoint of this scene and mesh. Called on one rank.
+void require_usable(const std::string& path, const std::string& fingerprint, GlobalIndex nodes,
+                    std::uint64_t mesh_digest) {
+  require_hdf5(path);
+  try {
+    const auto file = Hdf5File::open(MPI_COMM_SELF, path, Hdf5File::Access::read);
+    require_format(file);
+    if (file.attribute<std::string>("/", "fingerprint") != fingerprint)
+      throw UserError("checkpoint '" + path + "' belongs to another scene");
+    if (file.shape_of("/positions") != TableShape{nodes, 3} ||
+        file.shape_of("/velocities") != TableShape{nodes, 3} ||
+        file.attribute<std::int64_t>("/", "mesh_digest") != as_attribute(mesh_digest))
+      throw UserError("checkpoint '" + path + "' belongs to another mesh");
+  } catch (const Hdf5Error& error) {
+    throw UserError("checkpoint '" + path + "' is truncated or damaged: " + error.reason());
+  }
+}
+
+std::vector<StateScalar> read_scalars(const Hdf5File& file) {
+  const auto names = file.attribute<std::vector<std::string>>("/", "scalar_names");
+  const auto values = file.attribute<std::vector<double>>("/", "scalar_values");
+  if (names.size() != values.size())
+    throw UserError("checkpoint '" + file.path() + "' is damaged: a scalar is missing");
+  std::vector<StateScalar> scalars;
+  for (std::size_t i = 0; i < names.size(); ++i) scalars.emplace_back(names[i], values[i]);
+  return scalars;
+}
+
+}  // namespace
+
+CheckpointWriter::CheckpointWriter(const DistributedMesh& mesh, std::string path, std::string fingerprint)
+    : mesh_(mesh),
+      path_(std::move(path)),
+      fingerprint_(std::move(fingerprint)),
+      mesh_digest_(digest(mesh)),
+      order_(natural_node_order(mesh)) {
+  on_root(mesh.comm, [&] { require_writable(path_); });
+}
+
+void CheckpointWriter::write(std::span<const double> positions, std::span<const double> velocities,
+                             std::span<const StateScalar> scalars) const {
+  const PhaseScope phase(Phase::io);
+  const std::string temporary = path_ + ".tmp";
+  try {
+    on_root(mesh_.comm, [&] { require_writable(temporary); });
+    write_file(temporary, positions, velocities, scalars);
+    on_every_rank(mesh_.comm, [&] { sync_file(temporary); });
+    on_root(mesh_.comm, [&] { replace_file(temporary, path_); });
+  } catch (const UserError&) {
+    on_root(mesh_.comm, [&] { std::remove(temporary.c_str()); });
+    throw;
+  }
+}
+
+void CheckpointWriter::write_file(const std::string& path, std::span<const double> positions,
+                                  std::span<const double> velocities,
+                                  std::span<const StateScalar> scalars) const {
+  auto file = Hdf5File::create(mesh_.comm, path);
+  std::vector<std::string> names;
+  std::vector<double> values;
+  auto bytes = mesh_.total_nodes * 48 + metadata_allowance + static_cast<std::int64_t>(fingerprint_.size());
+  for (const auto& [name, value] : scalars) {
+    names.push_back(name);
+    values.push_back(value);
+    bytes += 256;
+  }
+  on_root(mesh_.comm, [&] { reserve_space(path, bytes); });
+  file.set_attribute("/", "format", format);
+  file.set_attribute("/", "format_version", format_version);
+  file.set_attribute("/", "fingerprint", fingerprint_);
+  file.set_attribute("/", "mesh_digest", as_attribute(mesh_digest_));
+  file.set_attribute("/", "scalar_names", names);
+  file.set_attribute("/", "scalar_values", values);
+  const auto write_table = [&](const std::string& table, std::span<const double> owned) {
+    const auto slice = order_.to_slices<double>(owned, 3);
+    file.write<double>(table, {order_.total(), 3}, slice_of(order_), slice);
+    file.set_attribute(table, "digest", as_attribute(digest(mesh_.comm, 3 * order_.first(), slice)));
+  };
+  write_table("/positions", positions);
+  write_table("/velocities", velocities);
+  file.close();
+}
+
+CheckpointState read_checkpoint(const DistributedMesh& mesh, const std::string& path,
+                                const std::string& fingerprint) {
+  const PhaseScope phase(Phase::io);
+  const auto mesh_digest = digest(mesh);
+  on_root(mesh.comm, [&] { require_usable(path, fingerprint, mesh.total_nodes, mesh_digest); });
+  const auto order = natural_node_order(mesh);
+  const auto file = Hdf5File::open(mesh.comm, path, Hdf5File::Access::read);
+  const auto read_table = [&](const std::string& table) {
+    const auto slice = file.read<double>(table, slice_of(order));
+    if (as_attribute(digest(mesh.comm, 3 * order.first(), slice)) !=
+        file.attribute<std::int64_t>(table, "digest"))
+      throw UserError("checkpoint '" + path + "' is damaged: the values of '" + table + "' have changed");
+    return order.to_owners<double>(slice, 3);
+  };
+  return {read_table("/positions"), read_table("/velocities"), read_scalars(file)};
+}
+
+}  // namespace evert
