@@ -1,0 +1,174 @@
+#pragma once
+#include "evert/forces/kernels/point_run.hpp"
+#include "evert/materials/damping.hpp"
+
+/// The damping operator C(x), matrix-free.  paper A, section 6.2; PHYSICS 4
+///
+/// Both models are one law, P = A (β (ḞᵀA + AᵀḞ) + α tr(AᵀḞ) I), with A = Q = U Vᵀ (rotated) or A = F
+/// (objective). Kept of each point is A, 9 numbers. Where A is a rotation and the cell has one point, less
+/// work remains when h_a = √V Q ∂N_a/∂X is kept instead, also 9 numbers for a tetrahedron: with L = Σ v_a
+/// h_aᵀ the damping force on node a is −S h_a, S = β (L + Lᵀ) + α tr(L) I.
+namespace evert::kernels {
+
+template <const auto& element, DampingModel damping>
+inline constexpr bool keeps_rotated_gradients = damping == DampingModel::rotated&& element.points == 1;
+
+/// Numbers kept per batch and lane.
+template <const auto& element, DampingModel damping>
+inline constexpr std::size_t damping_numbers = damping == DampingModel::none ? 0
+                                               : keeps_rotated_gradients<element, damping>
+                                                   ? 3 * (element.nodes - 1)
+                                                   : 9 * element.points;
+
+template <Real T>
+EVERT_ALWAYS_INLINE void store_vector(const Vec3<T>& v, double* to) {
+  for (std::size_t i = 0; i < 3; ++i) store(v[i], to + i * lanes_v<T>);
+}
+template <Real T>
+EVERT_ALWAYS_INLINE Vec3<T> load_vector(const double* from) {
+  return {load<T>(from), load<T>(from + lanes_v<T>), load<T>(from + 2 * lanes_v<T>)};
+}
+
+/// The state of one batch.
+template <Real T, const auto& element, DampingModel damping>
+struct DampingState {
+  static constexpr std::size_t lanes = lanes_v<T>;
+  double* numbers;
+
+  EVERT_ALWAYS_INLINE DampingState(const BlockArrays& block, LocalIndex batch)
+      : numbers(block.damping_state +
+                static_cast<std::size_t>(batch) * damping_numbers<element, damping> * lanes) {}
+
+  EVERT_ALWAYS_INLINE double* vector(std::size_t i) const { return numbers + i * 3 * lanes; }
+  /// h_a of node a ≥ 1.
+  EVERT_ALWAYS_INLINE Vec3<T> rotated_gradient(std::size_t a) const { return load_vector<T>(vector(a - 1)); }
+  /// A of point q.
+  EVERT_ALWAYS_INLINE Mat3<T> frame(std::size_t q) const {
+    return {load_vector<T>(vector(3 * q)), load_vector<T>(vector(3 * q + 1)),
+            load_vector<T>(vector(3 * q + 2))};
+  }
+};
+
+/// Keeps what C(x) needs of a diagonalised run.
+template <Real T, const auto& element, DampingModel damping>
+EVERT_STAGE void keep_damping_state(const BlockArrays& block, BatchRange batches, const PointRun<T>& run) {
+  std::size_t i = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    const DampingState<T, element, damping> state(block, b);
+    for (std::size_t q = 0; q < batch.points; ++q, ++i) {
+      const Mat3<T> frame = damping == DampingModel::rotated
+                                ? polar_rotation(run.left[i], run.plane[i], run.right[i])
+                                : run.deformation_gradient[i];
+      if constexpr (keeps_rotated_gradients<element, damping>) {
+        const Mat3<T> scaled = sqrt(batch.volume(q)) * frame;
+        for (std::size_t a = 1; a < element.nodes; ++a)
+          store_vector(scaled * batch.gradient(q, a), state.vector(a - 1));
+      } else {
+        for (std::size_t j = 0; j < 3; ++j) store_vector(frame.column[j], state.vector(3 * q + j));
+      }
+    }
+  }
+}
+
+/// β (L + Lᵀ) + α tr(L) I.
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> viscous_stress(const Mat3<T>& l, const T& alpha, const T& beta) {
+  const T pressure = alpha * trace(l);
+  const T s01 = beta * (l(0, 1) + l(1, 0)), s02 = beta * (l(0, 2) + l(2, 0)),
+          s12 = beta * (l(1, 2) + l(2, 1));
+  const T two_beta = beta + beta;
+  return {{{{two_beta * l(0, 0) + pressure, s01, s02},
+            {s01, two_beta * l(1, 1) + pressure, s12},
+            {s02, s12, two_beta * l(2, 2) + pressure}}}};
+}
+
+/// C v of one batch, per node but the first; `edges` are differences of v.
+template <Real T, const auto& element, DampingModel damping>
+EVERT_ALWAYS_INLINE Edges<T, element.nodes> damping_forces(const BlockArrays& block, LocalIndex b,
+                                                           const Edges<T, element.nodes>& edges,
+                                                           const T& alpha, const T& beta) {
+  const CellBatch<T, element> batch(block, b);
+  const DampingState<T, element, damping> state(block, b);
+  Edges<T, element.nodes> forces;
+  if constexpr (keeps_rotated_gradients<element, damping>) {
+    Mat3<T> l = outer(edges[0], state.rotated_gradient(1));
+    for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], state.rotated_gradient(a));
+    const Mat3<T> stress = viscous_stress(l, alpha, beta);
+    for (std::size_t a = 1; a < element.nodes; ++a) forces[a - 1] = stress * state.rotated_gradient(a);
+  } else {
+    for (std::size_t q = 0; q < batch.points; ++q) {
+      const Mat3<T> frame = state.frame(q);
+      const Mat3<T> rate = transpose_times(frame, batch.field_gradient(edges, q));
+      const Mat3<T> stress = batch.volume(q) * (frame * viscous_stress(rate, alpha, beta));
+      for (std::size_t a = 1; a < element.nodes; ++a) {
+        const Vec3<T> force = stress * batch.gradient(q, a);
+        forces[a - 1] = q == 0 ? force : forces[a - 1] + force;
+      }
+    }
+  }
+  return forces;
+}
+
+/// See ElasticBlock::add_damping.
+template <Real T, const auto& element, DampingModel damping>
+void add_damping(const BlockArrays& block, const Damping& coefficients, double factor, const double* v,
+                 double* out, BatchRange batches) {
+  const T alpha = T(factor * coefficients.alpha);
+  const T beta = T(factor * coefficients.beta);
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    const auto forces = damping_forces<T, element, damping>(block, b, batch.edges_of(v), alpha, beta);
+    scatter_balanced<T, element.nodes>(forces, out, batch.nodes);
+  }
+}
+
+/// V (β (h hᵀ + |g|² A Aᵀ) + α h hᵀ), h = A g: the diagonal block of the node with gradient g.
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> damping_block(const Vec3<T>& h, const T& gradient_squared,
+                                          const Mat3<T>& frame_square, const T& alpha, const T& beta) {
+  return outer((alpha + beta) * h, h) + (beta * gradient_squared) * frame_square;
+}
+
+/// See ElasticBlock::add_damping_diagonal.
+template <Real T, const auto& element, DampingModel damping>
+void add_damping_diagonal(const BlockArrays& block, const Damping& coefficients, double factor,
+                          double* blocks, BatchRange batches) {
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    const DampingState<T, element, damping> state(block, b);
+    std::array<Mat3<T>, element.nodes> diagonal{};
+    for (std::size_t q = 0; q < batch.points; ++q) {
+      T weight = T(factor);
+      Mat3<T> frame = identity<T>();
+      if constexpr (!keeps_rotated_gradients<element, damping>) {
+        weight *= batch.volume(q);
+        frame = state.frame(q);
+      }
+      const Mat3<T> frame_square = times_transpose(frame, frame);
+      const T alpha = weight * T(coefficients.alpha), beta = weight * T(coefficients.beta);
+      Vec3<T> first{T(0.0), T(0.0), T(0.0)};
+      const auto add = [&](std::size_t a, const Vec3<T>& gradient) {
+        diagonal[a] += damping_block(frame * gradient, dot(gradient, gradient), frame_square, alpha, beta);
+      };
+      for (std::size_t a = 1; a < element.nodes; ++a) {
+        Vec3<T> gradient;
+        if constexpr (keeps_rotated_gradients<element, damping>) {
+          gradient = state.rotated_gradient(a);
+        } else {
+          gradient = batch.gradient(q, a);
+        }
+        first -= gradient;
+        add(a, gradient);
+      }
+      add(0, first);
+    }
+    for (std::size_t a = 0; a < element.nodes; ++a) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        add_rows<T, 9>(blocks + 3 * j, batch.nodes + a * lanes_v<T>, rows_of_lanes<T>(diagonal[a].column[j]));
+      }
+    }
+  }
+}
+
+}  // namespace evert::kernels

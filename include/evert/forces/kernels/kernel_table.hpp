@@ -1,0 +1,66 @@
+#pragma once
+#include "evert/forces/kernels/damping_kernels.hpp"
+#include "evert/forces/kernels/elastic_kernels.hpp"
+#include "evert/forces/kernels/force_kernels.hpp"
+#include "evert/forces/kernels/measure_kernels.hpp"
+
+/// Picks the instances of the kernel templates. For inclusion by the sources compiled once per CPU level, and
+/// by tests that run the kernels on scalars.
+namespace evert::kernels {
+
+template <Real T, const auto& element, class Model, DampingModel damping>
+constexpr ElasticKernels kernels_of() {
+  ElasticKernels table{
+      .lanes = static_cast<int>(lanes_v<T>),
+      .damping_numbers = static_cast<int>(damping_numbers<element, damping>),
+      .rotated_gradients = keeps_rotated_gradients<element, damping>,
+      .update = update<T, element, Model, damping>,
+      .energy = energy<T, element, Model>,
+      .min_stretch = min_stretch<T, element>,
+      .inverted_points = inverted_points<T, element>,
+      .stable_step = stable_step<T, element, Model>,
+      .max_strain_rate = max_strain_rate<T, element>,
+  };
+  if constexpr (damping != DampingModel::none) {
+    table.add_damping = add_damping<T, element, damping>;
+    table.add_damping_diagonal = add_damping_diagonal<T, element, damping>;
+  }
+  return table;
+}
+
+template <Real T, const auto& element, class Model>
+constexpr ElasticKernels kernels_of(DampingModel damping) {
+  switch (damping) {
+    case DampingModel::rotated:
+      return kernels_of<T, element, Model, DampingModel::rotated>();
+    case DampingModel::objective:
+      return kernels_of<T, element, Model, DampingModel::objective>();
+    case DampingModel::none:
+      break;
+  }
+  return kernels_of<T, element, Model, DampingModel::none>();
+}
+
+template <Real T, const auto& element, class... Models>
+ElasticKernels kernels_of(const std::variant<Models...>& material, DampingModel damping) {
+  ElasticKernels table;
+  const auto take_if = [&]<class Model>() {
+    if (std::holds_alternative<Model>(material)) table = kernels_of<T, element, Model>(damping);
+  };
+  (take_if.template operator()<Models>(), ...);
+  return table;
+}
+
+/// `lanes` is 0 in the answer for a type without an element.
+template <Real T, const auto&... elements>
+ElasticKernels kernels_of(ReferenceElements<elements...> /*all*/, CellType type, const Material& material,
+                          DampingModel damping) {
+  ElasticKernels table;
+  const auto take_if = [&]<const auto & element>() {
+    if (element.type == type) table = kernels_of<T, element>(material, damping);
+  };
+  (take_if.template operator()<elements>(), ...);
+  return table;
+}
+
+}  // namespace evert::kernels

@@ -1,0 +1,89 @@
+#pragma once
+#include "evert/materials/lame.hpp"
+#include "evert/math/pack.hpp"
+#include "evert/math/vec3.hpp"
+
+#include <array>
+#include <utility>
+
+/// How stiff an isotropic material is at a point, against its own stiffness at rest.  PHYSICS 5 and 9
+///
+/// The tangent ∂P/∂F is compared with B = 2μ I + λ R⊗R, R = U Vᵀ, on all nine components: the smallest s with
+/// ∂P/∂F ⪯ s B. An element's tangent stiffness K_e(x) is then ⪯ s K_B,e, whose largest eigenvalue λ_e does
+/// not depend on R and so is computed once, at rest. For a linear tetrahedron with λ ≥ 0, λ_e is the largest
+/// eigenvalue of the element at rest itself, so that the bound is exact at rest (s = 1) and rigorous
+/// everywhere: λmax(K_e(x)) ≤ s λ_e. Several quadrature points with different R make it an estimate.
+///
+/// In the frames of U and V, ∂P/∂F falls into ∂²ψ/∂σ² on the diagonal, and per pair of axes (P_i − P_j)/(σ_i
+/// − σ_j) on the symmetric and (P_i + P_j)/(σ_i + σ_j) on the skew off-diagonal part.
+namespace evert::kernels {
+
+/// Both in units of B, ≥ 0: directions in which the tangent is negative need no small step.
+template <class T>
+struct TangentBound {
+  T total;  ///< s
+  T spin;   ///< that of the skew part alone, which damping does not see
+};
+
+/// An upper bound of the largest eigenvalue of a symmetric matrix, exact where the other two are equal and at
+/// most 2 % above otherwise (relative to the spread): mean + 2 deviations, then Newton on the characteristic
+/// polynomial, which comes down to the largest root from above.
+template <Real T>
+EVERT_ALWAYS_INLINE T largest_eigenvalue_bound(const Mat3<T>& a) {
+  const T mean = T(1.0 / 3) * trace(a);
+  const Mat3<T> deviator = a - mean * identity<T>();
+  const T spread = sqrt(max(T(1.0 / 6) * contract(deviator, deviator), T(1e-300)));
+  // Roots of x³ − 3x − 2g, g = det(deviator) / (2 spread³), lie in [−2, 2].
+  const T unit = T(1.0) / spread;
+  const T g = T(0.5) * determinant(deviator) * (unit * unit * unit);
+  T x = T(2.0);
+  for (int step = 0; step < 3; ++step) {
+    x -= (x * (x * x - T(3.0)) - (g + g)) / max(T(3.0) * (x * x - T(1.0)), T(1e-3));
+  }
+  return mean + spread * min(max(x, T(1.0)), T(2.0));
+}
+
+/// B^−½ D B^−½ for the diagonal part: B = 2μ I + λ 11ᵀ there.
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> relative_to_rest(const Mat3<T>& d, const Lame& lame) {
+  const double shear = 1 / std::sqrt(2 * lame.mu);
+  const double bulk = 1 / std::sqrt(2 * lame.mu + 3 * lame.lambda);
+  const T a = T(shear);
+  const T b = T((bulk - shear) / 3);
+  const Vec3<T> row_sum = d * Vec3<T>{T(1.0), T(1.0), T(1.0)};
+  const T sum = row_sum[0] + row_sum[1] + row_sum[2];
+  Mat3<T> relative;
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      relative(i, j) = a * a * d(i, j) + a * b * (row_sum[i] + row_sum[j]) + b * b * sum;
+    }
+  }
+  return relative;
+}
+
+/// Axes closer than this have the limit of the divided difference.
+inline constexpr double equal_stretches = 1e-5;
+/// The inverted axis may switch where σ_i + σ_j = 0: the stress jumps there, and no step resolves it. The
+/// skew stiffness is not followed any closer.
+inline constexpr double smallest_stretch_sum = 0.2;
+
+/// `model` at the principal stretches `sigma`, in any order. `model.lame` must be positive definite (E > 0).
+template <Real T, class Model>
+EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3<T>& sigma) {
+  const Vec3<T> stress = model.principal_stress(sigma);
+  const Mat3<T> derivative = model.stress_derivative(sigma);
+  T stretching = max(largest_eigenvalue_bound(relative_to_rest(derivative, model.lame)), T(0.0));
+  T spin = T(0.0);
+  const T in_shear = T(1 / (2 * model.lame.mu));
+  for (const auto& [i, j] : std::array<std::array<std::size_t, 2>, 3>{{{0, 1}, {0, 2}, {1, 2}}}) {
+    const T difference = sigma[i] - sigma[j];
+    const auto equal = abs(difference) < T(equal_stretches);
+    const T limit = T(0.5) * (derivative(i, i) + derivative(j, j)) - derivative(i, j);
+    const T shear = select(equal, limit, (stress[i] - stress[j]) / select(equal, T(1.0), difference));
+    stretching = max(stretching, in_shear * shear);
+    spin = max(spin, in_shear * (stress[i] + stress[j]) / max(sigma[i] + sigma[j], T(smallest_stretch_sum)));
+  }
+  return {max(stretching, spin), spin};
+}
+
+}  // namespace evert::kernels

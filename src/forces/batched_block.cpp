@@ -1,0 +1,173 @@
+#include "batched_block.hpp"
+
+#include "evert/core/error.hpp"
+#include "evert/elements/reference_element.hpp"
+
+#include "rest_point.hpp"
+#include "rest_stiffness.hpp"
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace evert {
+namespace {
+
+Lame lame_of(const Material& material) {
+  return std::visit([](const auto& model) { return model.lame; }, material);
+}
+
+template <class Vector>
+std::size_t bytes(const Vector& v) {
+  return v.capacity() * sizeof(typename Vector::value_type);
+}
+
+/// A point of one cell as its damping operator sees it: with K_ab = V (β (h_b h_aᵀ + g_a·g_b A Aᵀ) + α h_a
+/// h_bᵀ), h = A g.
+template <int nodes>
+struct DampingPoint {
+  std::array<Vec3d, nodes> gradients;  ///< g_a
+  Mat3d frame;                         ///< A
+  double volume;                       ///< V
+
+  [[nodiscard]] Mat3d block(std::size_t a, std::size_t b, const Damping& damping) const {
+    const Vec3d ha = frame * gradients[a];
+    const Vec3d hb = frame * gradients[b];
+    const Mat3d shear = outer(hb, ha) + dot(gradients[a], gradients[b]) * times_transpose(frame, frame);
+    return volume * (damping.beta * shear + damping.alpha * outer(ha, hb));
+  }
+};
+
+}  // namespace
+
+BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> rest_positions,
+                           const Material& material, const Damping& damping,
+                           const kernels::ElasticKernels& kernels)
+    : element_block_(
+          make_element_block(cells.type, cells.nodes, cells.interior, rest_positions, kernels.lanes)),
+      material_(material),
+      damping_(damping),
+      density_(cells.density),
+      kernels_(kernels),
+      rest_stiffness_(rest_stiffness(element_block_, density_, lame_of(material))),
+      damping_state_(element_block_.cell_of_lane.size() * static_cast<std::size_t>(kernels.damping_numbers),
+                     0.0),
+      cell_nodes_(cells.nodes.begin(), cells.nodes.end()),
+      lane_of_cell_(static_cast<std::size_t>(element_block_.cells)) {
+  for (std::size_t slot = 0; slot < element_block_.cell_of_lane.size(); ++slot) {
+    const LocalIndex cell = element_block_.cell_of_lane[slot];
+    if (cell >= 0) lane_of_cell_[static_cast<std::size_t>(cell)] = static_cast<LocalIndex>(slot);
+  }
+  point_kernels_at_memory();
+}
+
+void BatchedBlock::point_kernels_at_memory() {
+  arrays_ = {element_block_.nodes.data(),   element_block_.gradients.data(),
+             element_block_.volumes.data(), element_block_.cell_of_lane.data(),
+             rest_stiffness_.data(),        damping_state_.data()};
+}
+
+void BatchedBlock::update(const double* x, double* f, BatchRange batches) {
+  kernels_.update(arrays_, material_, x, f, batches);
+}
+
+void BatchedBlock::add_damping(const double* v, double* out, double factor, BatchRange batches) const {
+  if (damped()) kernels_.add_damping(arrays_, damping_, factor, v, out, batches);
+}
+
+void BatchedBlock::add_damping_diagonal(double* blocks, double factor) const {
+  if (damped()) kernels_.add_damping_diagonal(arrays_, damping_, factor, blocks, all());
+}
+
+void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) const {
+  std::fill(matrix.begin(), matrix.end(), 0.0);
+  if (!damped()) return;
+  const auto lanes = static_cast<std::size_t>(element_block_.lanes);
+  const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
+  const auto state = [&](std::size_t vector) {
+    const double* of_lane =
+        &damping_state_[slot / lanes * lanes * static_cast<std::size_t>(kernels_.damping_numbers) +
+                        3 * vector * lanes + slot % lanes];
+    return Vec3d{of_lane[0], of_lane[lanes], of_lane[2 * lanes]};
+  };
+  with_reference_element(element_block_.type,
+                         [&]<int nodes, int points>(const ReferenceElement<nodes, points>& /*e*/) {
+                           for (std::size_t q = 0; q < points; ++q) {
+                             const RestPoint<nodes> rest = rest_point<nodes, points>(element_block_, slot, q);
+                             DampingPoint<nodes> point{rest.gradients, identity<double>(), rest.volume};
+                             if (kernels_.rotated_gradients) {
+                               point.volume = 1;  // in the h_a already
+                               point.gradients[0] = {};
+                               for (std::size_t a = 1; a < nodes; ++a) {
+                                 point.gradients[a] = state(a - 1);
+                                 point.gradients[0] -= point.gradients[a];
+                               }
+                             } else {
+                               point.frame = {state(3 * q), state(3 * q + 1), state(3 * q + 2)};
+                             }
+                             for (std::size_t a = 0; a < nodes; ++a) {
+                               for (std::size_t b = 0; b < nodes; ++b) {
+                                 const Mat3d block = point.block(a, b, damping_);
+                                 for (std::size_t i = 0; i < 3; ++i) {
+                                   for (std::size_t j = 0; j < 3; ++j)
+                                     matrix[(3 * a + i) * 3 * nodes + 3 * b + j] += block(i, j);
+                                 }
+                               }
+                             }
+                           }
+                         });
+}
+
+std::span<const LocalIndex> BatchedBlock::cell_nodes(LocalIndex cell) const {
+  const auto per_cell = static_cast<std::size_t>(node_count(element_block_.type));
+  return std::span(cell_nodes_).subspan(static_cast<std::size_t>(cell) * per_cell, per_cell);
+}
+
+double BatchedBlock::energy(const double* x) const { return kernels_.energy(arrays_, material_, x, all()); }
+
+void BatchedBlock::min_stretch(const double* x, std::span<double> per_cell) const {
+  EVERT_ASSERT(per_cell.size() == lane_of_cell_.size(), std::to_string(per_cell.size()));
+  kernels_.min_stretch(arrays_, x, per_cell.data(), all());
+}
+
+LocalIndex BatchedBlock::inverted_points(const double* x) const {
+  return kernels_.inverted_points(arrays_, x, all());
+}
+
+StableStep BatchedBlock::stable_step(const double* x) const {
+  return kernels_.stable_step(arrays_, material_, damping_, x, all());
+}
+
+double BatchedBlock::max_strain_rate(const double* x, const double* v) const {
+  return kernels_.max_strain_rate(arrays_, x, v, all());
+}
+
+void BatchedBlock::set_material(const Material& material, const Damping& damping) {
+  EVERT_ASSERT(material.index() == material_.index() && damping.model == damping_.model,
+               std::to_string(material.index()) + " for " + std::to_string(material_.index()));
+  const Lame before = lame_of(material_);
+  const Lame after = lame_of(material);
+  material_ = material;
+  damping_ = damping;
+  if (before.mu > 0 && after.lambda * before.mu == after.mu * before.lambda) {
+    // The same Poisson's ratio: K_e is proportional to the modulus.
+    for (double& lambda : rest_stiffness_) lambda *= after.mu / before.mu;
+  } else {
+    rest_stiffness_ = rest_stiffness(element_block_, density_, after);
+  }
+  point_kernels_at_memory();
+}
+
+std::size_t BatchedBlock::memory() const {
+  return bytes(element_block_.nodes) + bytes(element_block_.gradients) + bytes(element_block_.volumes) +
+         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_) + bytes(damping_state_) +
+         bytes(cell_nodes_) + bytes(lane_of_cell_);
+}
+
+std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
+                                                 std::span<const Vec3d> rest_positions,
+                                                 const Material& material, const Damping& damping,
+                                                 const kernels::ElasticKernels& kernels) {
+  return std::make_unique<BatchedBlock>(cells, rest_positions, material, damping, kernels);
+}
+
+}  // namespace evert

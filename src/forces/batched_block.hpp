@@ -1,0 +1,53 @@
+#pragma once
+#include "evert/core/aligned.hpp"
+#include "evert/elements/element_block.hpp"
+#include "evert/forces/elastic_block.hpp"
+#include "evert/forces/kernels/elastic_kernels.hpp"
+
+#include <vector>
+
+namespace evert {
+
+/// The memory of a block, and the calls of ElasticBlock handed on to kernels. Neither copied nor moved: the
+/// kernels hold pointers into it.
+class BatchedBlock final : public ElasticBlock {
+ public:
+  BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> rest_positions, const Material& material,
+               const Damping& damping, const kernels::ElasticKernels& kernels);
+  BatchedBlock(const BatchedBlock&) = delete;
+  BatchedBlock& operator=(const BatchedBlock&) = delete;
+
+  [[nodiscard]] BatchRange interior() const override { return element_block_.interior; }
+  [[nodiscard]] BatchRange boundary() const override { return element_block_.boundary; }
+  void update(const double* x, double* f, BatchRange batches) override;
+  [[nodiscard]] bool damped() const override { return kernels_.add_damping != nullptr; }
+  void add_damping(const double* v, double* out, double factor, BatchRange batches) const override;
+  void add_damping_diagonal(double* blocks, double factor) const override;
+  void damping_matrix(LocalIndex cell, std::span<double> matrix) const override;
+  [[nodiscard]] std::span<const LocalIndex> cell_nodes(LocalIndex cell) const override;
+  [[nodiscard]] LocalIndex cells() const override { return element_block_.cells; }
+  [[nodiscard]] double energy(const double* x) const override;
+  void min_stretch(const double* x, std::span<double> per_cell) const override;
+  [[nodiscard]] LocalIndex inverted_points(const double* x) const override;
+  [[nodiscard]] StableStep stable_step(const double* x) const override;
+  [[nodiscard]] double max_strain_rate(const double* x, const double* v) const override;
+  void set_material(const Material& material, const Damping& damping) override;
+  [[nodiscard]] std::size_t memory() const override;
+
+ private:
+  void point_kernels_at_memory();
+  [[nodiscard]] BatchRange all() const { return {0, element_block_.batches()}; }
+
+  ElementBlock element_block_;
+  Material material_;
+  Damping damping_;
+  double density_;
+  kernels::ElasticKernels kernels_;
+  AlignedVector<double> rest_stiffness_;
+  AlignedVector<double> damping_state_;
+  kernels::BlockArrays arrays_{};         // into the vectors above
+  std::vector<LocalIndex> cell_nodes_;    // node_count(type) per cell, in the order given
+  std::vector<LocalIndex> lane_of_cell_;  // inverse of ElementBlock::cell_of_lane
+};
+
+}  // namespace evert
