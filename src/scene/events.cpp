@@ -111,7 +111,7 @@ void resolve_events(SceneConfig& scene, const Value& root) {
     if (found == paths.end())
       schema::fail(*list.items[i].find("set"), join(path, "set"),
                    schema::shown(event.set) + " is nothing that an event can set in this scene" +
-                       did_you_mean(event.set, paths) + "; 'evert explain events' lists what can be");
+                       did_you_mean(event.set, paths) + "; 'evert explain events.set' says what can be");
     const auto& key = settable[static_cast<std::size_t>(found - paths.begin())];
     event.target = key.target;
     event.owner = key.owner;

@@ -64,7 +64,7 @@ class Override {
       return;
     }
     const auto* info = table.find(key);
-    if (info == nullptr) wrong(part, "holds a single value: the path ends there");
+    if (info == nullptr) wrong(part + 1, "is one too many: the path ends before it");
     inside(map, *info, part);
   }
 
@@ -80,6 +80,7 @@ class Override {
       case TypeInfo::Shape::list_of_tables:
         return in_list(value, info.type.table, part + 1);
       case TypeInfo::Shape::named_scalars:
+        if (!last(part + 1)) wrong(part + 2, "is one too many: the path ends before it");
         return assign(value, parts_[part + 1]);
       case TypeInfo::Shape::simple:
         return in_list(value, nullptr, part + 1);

@@ -116,14 +116,15 @@ std::string padded(std::string text, std::size_t width) {
 
 // --- one key
 
-/// Whether the query is the end of the path; names and indices may be left out of it.
+/// Whether the query is the end of the path; names and indices may be left out of it, but it does not begin
+/// with one.
 bool names_end_of(const Path& path, std::size_t path_size, const Path& query, std::size_t query_size) {
   if (query_size == 0) return true;
   if (path_size == 0) return false;
   const auto& part = path[path_size - 1];
   if (part.starts_with('<'))
     return names_end_of(path, path_size - 1, query, query_size) ||
-           names_end_of(path, path_size - 1, query, query_size - 1);
+           (query_size > 1 && names_end_of(path, path_size - 1, query, query_size - 1));
   return part == query[query_size - 1] && names_end_of(path, path_size - 1, query, query_size - 1);
 }
 

@@ -10,9 +10,8 @@ namespace {
 const Table<OutputConfig>& output_table() {
   static const auto table =
       Table<OutputConfig>("What is written, and how often.")
-          .optional(
-              "directory", &OutputConfig::directory, text("path"), "runs/torus",
-              "Made when it does not exist; runs/NAME unless given. Relative to the working directory.")
+          .optional("directory", &OutputConfig::directory, text("path"), "runs/torus",
+                    "Made when it does not exist; runs/NAME unless given. Relative to the working directory.")
           .optional("frames_per_second", &OutputConfig::frames_per_second, number("1/s", above(0)), "30",
                     "Frames per simulated second; without it no frames are written.")
           .optional("fields", &OutputConfig::fields,
@@ -68,6 +67,14 @@ std::string default_directory(std::string name) {
   return "runs/" + name;
 }
 
+void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*path*/) {
+  if (scene.output.directory.empty()) scene.output.directory = default_directory(scene.name);
+  if (scene.bodies.empty()) fail(*map.find("bodies"), "bodies", "must name at least one body");
+  for (const auto& [name, value] : scene.petsc)
+    if (name.starts_with('-'))
+      fail(*map.find("petsc")->find(name), "petsc." + name, "is written without its dash: " + name.substr(1));
+}
+
 }  // namespace
 
 const Table<SceneConfig>& scene_table() {
@@ -97,11 +104,7 @@ const Table<SceneConfig>& scene_table() {
           .optional("petsc", &SceneConfig::petsc, scalars_by_name("option: value"),
                     "{damping_ksp_rtol: 1e-6}",
                     "PETSc options, without their dash; the command line overrides them.")
-          .then([](SceneConfig& scene, const Value& map, const std::string& path) {
-            if (scene.output.directory.empty()) scene.output.directory = default_directory(scene.name);
-            if (scene.bodies.empty())
-              fail(*map.find("bodies"), join(path, "bodies"), "must name at least one body");
-          });
+          .then(finish_scene);
   return table;
 }
 
