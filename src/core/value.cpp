@@ -53,7 +53,7 @@ std::string join(std::string_view path, std::string_view key) {
 std::string shown(std::string_view text) {
   constexpr std::size_t longest = 60;
   const bool cut = text.size() > longest;
-  return "'" + escaped(text.substr(0, longest)) + (cut ? "...'" : "'");
+  return std::string("'").append(escaped(text.substr(0, longest))).append(cut ? "...'" : "'");
 }
 
 std::string shown(const Value& value) {
