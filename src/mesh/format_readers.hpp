@@ -11,5 +11,11 @@ namespace evert {
 [[nodiscard]] Mesh read_gmsh(InputCursor& in);
 /// Medit .mesh, ASCII.
 [[nodiscard]] Mesh read_medit(InputCursor& in);
+/// Legacy VTK, ASCII and binary.
+[[nodiscard]] Mesh read_vtk(InputCursor& in);
+/// VTK XML.
+[[nodiscard]] Mesh read_vtu(InputCursor& in);
+/// TetGen: `path` is the .node or the .ele file, the other stands beside it.
+[[nodiscard]] Mesh read_tetgen(const std::filesystem::path& path);
 
 }  // namespace evert

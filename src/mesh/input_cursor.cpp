@@ -55,6 +55,12 @@ void InputCursor::skip_blanks() {
   }
 }
 
+void InputCursor::limit_to(std::string_view part) {
+  position_ = last_ = part.empty() ? text_.size() : static_cast<std::size_t>(part.data() - text_.data());
+  text_ = text_.substr(0, position_ + part.size());
+  limited_ = true;
+}
+
 bool InputCursor::at_end() {
   skip_blanks();
   return position_ == text_.size();
@@ -93,7 +99,7 @@ std::int64_t InputCursor::integer(std::string_view what) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc{} || end != digits.data() + digits.size())
     fail(std::string(what) + " must be a whole number, not " + quoted(digits));
-  if (position_ == text_.size()) fail_at_end("the line end after " + std::string(what));
+  if (position_ == text_.size() && !limited_) fail_at_end("the line end after " + std::string(what));
   return value;
 }
 
@@ -107,7 +113,7 @@ double InputCursor::real(std::string_view what) {
   if (!whole || error == std::errc::invalid_argument)
     fail(std::string(what) + " must be a number, not " + quoted(digits));
   if (!std::isfinite(value)) fail(std::string(what) + " must be a finite number, not " + quoted(digits));
-  if (position_ == text_.size()) fail_at_end("the line end after " + std::string(what));
+  if (position_ == text_.size() && !limited_) fail_at_end("the line end after " + std::string(what));
   return value;
 }
 

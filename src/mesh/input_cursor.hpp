@@ -2,14 +2,13 @@
 #include "evert/core/error.hpp"
 #include "evert/core/index.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace evert {
 
@@ -32,6 +31,8 @@ class InputCursor {
   /// Everything not read yet.
   [[nodiscard]] std::string_view rest() const { return text_.substr(position_); }
   void set_position(std::size_t position) { position_ = position; }
+  /// Goes to the start of `part`, a part of the text, and takes the end of it for the end of the file.
+  void limit_to(std::string_view part);
   /// Turns the rest of a line after this character into blanks; none by default.
   void set_comment(char mark) { comment_ = mark; }
 
@@ -54,9 +55,9 @@ class InputCursor {
   /// One value as it lies in memory, its bytes reversed if `swap`.
   template <class T>
   [[nodiscard]] T binary(std::string_view what, bool swap) {
+    const auto source = bytes(sizeof(T), what);
     std::array<char, sizeof(T)> raw{};
-    std::memcpy(raw.data(), bytes(sizeof(T), what).data(), sizeof(T));
-    if (swap) std::reverse(raw.begin(), raw.end());
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw[i] = source[swap ? sizeof(T) - 1 - i : i];
     return std::bit_cast<T>(raw);
   }
   /// The next `size` bytes.
@@ -72,6 +73,7 @@ class InputCursor {
   [[noreturn]] void fail_at_end(std::string_view what) const;
 
   std::string_view text_;
+  bool limited_ = false;  // text_ ends before the file does
   std::string name_;
   std::size_t position_ = 0;
   std::size_t last_ = 0;  // where the last thing read began
