@@ -33,7 +33,7 @@ struct NeoHookean {
   /// Energy density ψ(σ) [Pa]. With `clamp` that at the limited stretches, of which the stress is *not* the
   /// gradient.
   template <class T>
-  T energy(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE T energy(const Vec3<T>& sigma) const {
     const Logarithms<T> at = logarithms(sigma);
     const T quadratic = dot(at.ratio, at.ratio);
     const T shape_log = at.volume_log - T(0.5) * quadratic;
@@ -43,7 +43,7 @@ struct NeoHookean {
 
   /// P̂ = ∂ψ/∂σ [Pa]; with `clamp` P̂ at the limited stretches.
   template <class T>
-  Vec3<T> principal_stress(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE Vec3<T> principal_stress(const Vec3<T>& sigma) const {
     const Logarithms<T> at = logarithms(sigma);
     const T mu = T(lame.mu);
     const T pressure = T(lame.lambda) * at.volume_log - mu;
@@ -55,7 +55,7 @@ struct NeoHookean {
 
   /// ∂²ψ/∂σ² [Pa], symmetric; with `clamp` that at the limited stretches.
   template <class T>
-  Mat3<T> stress_derivative(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE Mat3<T> stress_derivative(const Vec3<T>& sigma) const {
     const Logarithms<T> at = logarithms(sigma);
     const T mu = T(lame.mu);
     const T lambda = T(lame.lambda);
@@ -82,7 +82,7 @@ struct NeoHookean {
   };
 
   template <class T>
-  Logarithms<T> logarithms(const Vec3<T>& stretches) const {
+  EVERT_ALWAYS_INLINE Logarithms<T> logarithms(const Vec3<T>& stretches) const {
     const Vec3<T> sigma = evaluated_stretches(stretches, compression_limit, extension);
     const Vec3<T> c = limited_stretches(sigma, compression_limit);
     // One division for the three inverses, one logarithm for the three stretches.

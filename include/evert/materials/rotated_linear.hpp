@@ -16,7 +16,7 @@ struct RotatedLinear {
 
   /// Energy density ψ(σ) [Pa].
   template <class T>
-  T energy(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE T energy(const Vec3<T>& sigma) const {
     const Vec3<T> strain = strains(sigma);
     const T trace = strain[0] + strain[1] + strain[2];
     return T(lame.mu) * dot(strain, strain) + T(0.5 * lame.lambda) * trace * trace;
@@ -24,7 +24,7 @@ struct RotatedLinear {
 
   /// P̂ = ∂ψ/∂σ [Pa].
   template <class T>
-  Vec3<T> principal_stress(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE Vec3<T> principal_stress(const Vec3<T>& sigma) const {
     const Vec3<T> strain = strains(sigma);
     const T pressure = T(lame.lambda) * (strain[0] + strain[1] + strain[2]);
     return T(2 * lame.mu) * strain + Vec3<T>{pressure, pressure, pressure};
@@ -32,7 +32,7 @@ struct RotatedLinear {
 
   /// ∂²ψ/∂σ² [Pa], symmetric.
   template <class T>
-  Mat3<T> stress_derivative(const Vec3<T>& /*sigma*/) const {
+  EVERT_ALWAYS_INLINE Mat3<T> stress_derivative(const Vec3<T>& /*sigma*/) const {
     const T on = T(2 * lame.mu + lame.lambda);
     const T off = T(lame.lambda);
     return {{{{on, off, off}, {off, on, off}, {off, off, on}}}};
@@ -40,7 +40,7 @@ struct RotatedLinear {
 
  private:
   template <class T>
-  static Vec3<T> strains(const Vec3<T>& sigma) {
+  EVERT_ALWAYS_INLINE static Vec3<T> strains(const Vec3<T>& sigma) {
     return {sigma[0] - T(1.0), sigma[1] - T(1.0), sigma[2] - T(1.0)};
   }
 };

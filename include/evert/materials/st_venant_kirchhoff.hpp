@@ -26,14 +26,14 @@ struct StVenantKirchhoff {
   /// Energy density ψ(σ) [Pa]. With `clamp` that at the limited stretches, of which the stress is *not* the
   /// gradient.
   template <class T>
-  T energy(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE T energy(const Vec3<T>& sigma) const {
     const Strains<T> at = strains(sigma);
     return T(lame.mu) * dot(at.strain, at.strain) + T(0.5 * lame.lambda) * at.trace * at.trace;
   }
 
   /// P̂ = ∂ψ/∂σ [Pa]; with `clamp` P̂ at the limited stretches.
   template <class T>
-  Vec3<T> principal_stress(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE Vec3<T> principal_stress(const Vec3<T>& sigma) const {
     const Strains<T> at = strains(sigma);
     const auto along = [&](int i) { return at.slope[i] * second_piola_kirchhoff(at, i); };
     return {along(0), along(1), along(2)};
@@ -41,7 +41,7 @@ struct StVenantKirchhoff {
 
   /// ∂²ψ/∂σ² [Pa], symmetric; with `clamp` that at the limited stretches.
   template <class T>
-  Mat3<T> stress_derivative(const Vec3<T>& sigma) const {
+  EVERT_ALWAYS_INLINE Mat3<T> stress_derivative(const Vec3<T>& sigma) const {
     const Strains<T> at = strains(sigma);
     const T lambda = T(lame.lambda);
     const T modulus = T(2 * lame.mu + lame.lambda);
@@ -67,7 +67,7 @@ struct StVenantKirchhoff {
   };
 
   template <class T>
-  Strains<T> strains(const Vec3<T>& stretches) const {
+  EVERT_ALWAYS_INLINE Strains<T> strains(const Vec3<T>& stretches) const {
     const Vec3<T> sigma = evaluated_stretches(stretches, compression_limit, extension);
     const Vec3<T> c = limited_stretches(sigma, compression_limit);
     const auto strain_along = [&](int i) {
@@ -78,7 +78,7 @@ struct StVenantKirchhoff {
   }
 
   template <class T>
-  T second_piola_kirchhoff(const Strains<T>& at, int i) const {
+  EVERT_ALWAYS_INLINE T second_piola_kirchhoff(const Strains<T>& at, int i) const {
     return T(2 * lame.mu) * at.strain[i] + T(lame.lambda) * at.trace;
   }
 };
