@@ -30,10 +30,19 @@ class VecView {
   std::size_t size_ = 0;
 };
 
-std::string matrix_type_option() {
+// In PETSc's own style, so that -help lists the option.
+PetscErrorCode read_matrix_type(MPI_Comm comm, char* text, std::size_t size) {
+  PetscFunctionBeginUser;
+  PetscOptionsBegin(comm, "damping_", "Operator of the damping solves", nullptr);
+  PetscCall(PetscOptionsString("-mat_type", "shell (matrix-free), baij, sbaij or aij", nullptr, text, text, size, nullptr));
+  PetscOptionsEnd();
+  PetscFunctionReturn(0);
+}
+
+std::string matrix_type_option(MPI_Comm comm) {
   const std::array<std::string, 4> allowed{"shell", "baij", "sbaij", "aij"};
   std::array<char, 64> text{"shell"};
-  check(PetscOptionsGetString(nullptr, "damping_", "-mat_type", text.data(), text.size(), nullptr));
+  check(read_matrix_type(comm, text.data(), text.size()));
   const std::string type = text.data();
   if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
     throw UserError("-damping_mat_type " + type + " is not allowed: must be " + list_of(allowed) +
@@ -54,11 +63,26 @@ void require_entries_for(KSP ksp, const std::string& matrix_type) {
                     " needs the entries of the matrix: add -damping_mat_type baij, sbaij or aij");
 }
 
+/// Conjugate gradients with our defaults, then the user's options.
+KspHandle configured_ksp(MPI_Comm comm, const std::string& matrix_type) {
+  KspHandle ksp;
+  check(KSPCreate(comm, ksp.out()));
+  check(KSPSetOptionsPrefix(ksp.get(), "damping_"));
+  check(KSPSetType(ksp.get(), KSPCG));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp.get(), &pc));
+  check(PCSetType(pc, matrix_type == "sbaij" ? PCJACOBI : PCPBJACOBI));
+  constexpr double default_rtol = 1e-6;
+  check(KSPSetTolerances(ksp.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  check(KSPSetFromOptions(ksp.get()));
+  require_entries_for(ksp.get(), matrix_type);
+  return ksp;
+}
+
 }  // namespace
 
 DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
     : mesh_(mesh), elastic_(elastic) {
-  const NodeField like(mesh);
   check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, residual_.out()));
   check(VecSetBlockSize(residual_.get(), 3));
   check(VecDuplicate(residual_.get(), projected_.out()));
@@ -68,20 +92,22 @@ DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& e
 
 void DampingSolver::create_ksp() {
   operator_ = std::make_unique<DampingOperator>(mesh_, elastic_);
-  const auto type = matrix_type_option();
+  const auto type = matrix_type_option(mesh_.comm);
   if (type != "shell") assembled_ = std::make_unique<AssembledDamping>(*operator_, type.c_str());
-  check(KSPCreate(mesh_.comm, ksp_.out()));
-  check(KSPSetOptionsPrefix(ksp_.get(), "damping_"));
-  check(KSPSetType(ksp_.get(), KSPCG));
+  ksp_ = configured_ksp(mesh_.comm, type);
   const Mat mat = assembled_ != nullptr ? assembled_->mat() : operator_->mat();
   check(KSPSetOperators(ksp_.get(), mat, mat));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp_.get(), &pc));
-  check(PCSetType(pc, type == "sbaij" ? PCJACOBI : PCPBJACOBI));
-  constexpr double default_rtol = 1e-6;
-  check(KSPSetTolerances(ksp_.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  check(KSPSetFromOptions(ksp_.get()));
-  require_entries_for(ksp_.get(), type);
+  if (assembled_ == nullptr) return;
+  // Preconditioners of several parts read the options of their parts when they are first set up: now, so that an
+  // option that nobody reads is noticed before the run.
+  operator_->set(1e-3, {});
+  assembled_->assemble();
+  check(KSPSetUp(ksp_.get()));
+}
+
+void DampingSolver::print_options(MPI_Comm comm) {
+  const auto type = matrix_type_option(comm);
+  static_cast<void>(configured_ksp(comm, type));
 }
 
 void DampingSolver::invalidate() {

@@ -18,6 +18,9 @@ class DampingSolver {
   /// Collective. Reads the options; throws UserError for one that cannot work.
   DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic);
 
+  /// Collective. With -help: makes PETSc print what the solver can be told.
+  static void print_options(MPI_Comm comm);
+
   /// Collective. C has changed: call after every force update.
   void invalidate();
 

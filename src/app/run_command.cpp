@@ -1,0 +1,191 @@
+#include "evert/app/run_command.hpp"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <numeric>
+
+#include "evert/app/run_loop.hpp"
+#include "evert/app/run_observers.hpp"
+#include "evert/core/collective.hpp"
+#include "evert/core/petsc.hpp"
+#include "evert/forces/kernels/cpu_level.hpp"
+#include "evert/io/files.hpp"
+#include "evert/io/summary.hpp"
+#include "evert/scene/build.hpp"
+#include "evert/scene/load.hpp"
+#include "evert/scene/petsc_options.hpp"
+#include "evert/sim/shape_error.hpp"
+
+namespace evert {
+namespace {
+
+constexpr int done = 0;
+constexpr int interrupted = 130;
+
+/// Where a run's files are, by name.
+struct RunFiles {
+  std::string directory;
+  [[nodiscard]] std::string operator()(const char* name) const {
+    return (std::filesystem::path(directory) / name).string();
+  }
+};
+
+/// The observers of a run; those that others ask have names.
+struct Observers {
+  std::vector<std::unique_ptr<Observer>> all;
+  RunStatistics* statistics = nullptr;
+  FrameObserver* frames = nullptr;            // where the scene wants frames
+  CheckpointObserver* checkpoints = nullptr;  // always: a signal writes one
+
+  template <class T>
+  T* add(std::unique_ptr<T> observer) {
+    auto* pointer = observer.get();
+    all.push_back(std::move(observer));
+    return pointer;
+  }
+};
+
+FrameFields fields_of(const OutputConfig& output) {
+  FrameFields fields{false, false, false, false};
+  for (const auto field : output.fields) {
+    if (field == OutputField::velocity) fields.velocity = true;
+    if (field == OutputField::min_stretch) fields.min_stretch = true;
+    if (field == OutputField::inversion) fields.inversion = true;
+    if (field == OutputField::rank) fields.rank = true;
+  }
+  return fields;
+}
+
+/// What must be equal for a checkpoint to go on in a scene: all but how long it runs, what it writes and how it solves.
+std::string fingerprint_of(const SceneConfig& scene) {
+  const std::array<std::string_view, 4> left_out{"end_time:", "output:", "checkpoint:", "petsc:"};
+  std::string fingerprint;
+  bool kept = true;
+  for (std::size_t begin = 0; begin < scene.text.size();) {
+    const auto end = std::min(scene.text.find('\n', begin), scene.text.size() - 1) + 1;
+    const std::string_view line(&scene.text[begin], end - begin);
+    if (line.front() != ' ' && line.front() != '-')
+      kept = std::none_of(left_out.begin(), left_out.end(), [&](auto key) { return line.starts_with(key); });
+    if (kept) fingerprint += line;
+    begin = end;
+  }
+  return fingerprint;
+}
+
+/// How often inverted points are counted: with the frames, or a hundred times.
+double look_interval(const SceneConfig& scene) {
+  return scene.output.frames_per_second ? 1 / *scene.output.frames_per_second : scene.end_time / 100;
+}
+
+Observers make_observers(const SceneConfig& scene, const Simulation& simulation, const RunFiles& files,
+                         const RunArguments& arguments) {
+  Observers observers;
+  const auto& mesh = simulation.mesh();
+  const bool restarted = !arguments.restart.empty();
+  observers.statistics = observers.add(std::make_unique<RunStatistics>(look_interval(scene)));
+  if (scene.output.frames_per_second) {
+    const auto fields = fields_of(scene.output);
+    auto writer = restarted
+                      ? FrameWriter::continue_from(mesh, files("run.h5"), fields, simulation.time())
+                      : FrameWriter(mesh, files("run.h5"), fields);
+    observers.frames =
+        observers.add(std::make_unique<FrameObserver>(std::move(writer), 1 / *scene.output.frames_per_second));
+  }
+  if (scene.output.energy_log) {
+    auto log = restarted ? EnergyLog::continue_from(mesh.comm, files("energy.csv"), simulation.time())
+                         : EnergyLog(mesh.comm, files("energy.csv"));
+    observers.add(std::make_unique<EnergyObserver>(std::move(log), *scene.output.energy_log));
+  }
+  observers.checkpoints = observers.add(std::make_unique<CheckpointObserver>(
+      CheckpointWriter(mesh, files("checkpoint.h5"), fingerprint_of(scene)),
+      scene.checkpoint.value_or(CheckpointConfig{})));
+  observers.add(std::make_unique<ProgressObserver>(simulation, scene.end_time, arguments.quiet, *observers.statistics));
+  return observers;
+}
+
+void restore(Simulation& simulation, const std::string& path, const std::string& fingerprint) {
+  const auto state = read_checkpoint(simulation.mesh(), path, fingerprint);
+  simulation.restore(state.positions, state.velocities, state.scalars);
+}
+
+GlobalIndex quadrature_points_of(const DistributedMesh& mesh) {
+  GlobalIndex points = 0;
+  for (const auto& cells : mesh.cells) points += GlobalIndex{quadrature_points(cells.type)} * cells.size();
+  MPI_Allreduce(MPI_IN_PLACE, &points, 1, MPI_INT64_T, MPI_SUM, mesh.comm);
+  return points;
+}
+
+RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Observers& observers, RunEnd end) {
+  const auto& simulation = *built.simulation;
+  RunSummary summary;
+  summary.scene = scene.name;
+  summary.outcome = end == RunEnd::reached_end_time ? "finished" : "interrupted";
+  summary.nodes = simulation.mesh().total_nodes;
+  summary.cells = simulation.mesh().total_cells;
+  summary.steps = simulation.steps();
+  summary.simulated_time = simulation.time();
+  summary.cg_iterations = observers.statistics->cg_iterations;
+  summary.frames = observers.frames == nullptr ? 0 : observers.frames->frames();
+  summary.max_inverted_points = observers.statistics->max_inverted;
+  summary.max_inverted_time = observers.statistics->max_inverted_time;
+  summary.quadrature_points = quadrature_points_of(simulation.mesh());
+  summary.final_state = simulation.measure();
+  summary.cpu_level = kernels::name_of(kernels::cpu_level());
+  for (const auto& body : built.bodies)
+    summary.shape_errors.emplace_back(
+        body.name, rms_shape_error(simulation.mesh(), simulation.positions(), body.first_node, body.end_node));
+  return summary;
+}
+
+/// The closing lines: what happened, and where it is.
+void print_outcome(const RunSummary& summary, const RunFiles& files) {
+  const double points = static_cast<double>(std::max<GlobalIndex>(summary.quadrature_points, 1));
+  std::printf("%s: %s at t = %g s after %lld steps, %s; inverted: at most %.1f %% (t = %.3g s), %lld at the end\n",
+              summary.scene.c_str(), summary.outcome.c_str(), summary.simulated_time,
+              static_cast<long long>(summary.steps), duration_text(summary.wall_time).c_str(),
+              100 * static_cast<double>(summary.max_inverted_points) / points, summary.max_inverted_time,
+              static_cast<long long>(summary.final_state.inverted_points));
+  for (const auto& [body, error] : summary.shape_errors)
+    std::printf("  %s: rms distance to its rest shape %.3g m\n", body.c_str(), error);
+  std::printf("  written to %s\n", files.directory.c_str());
+}
+
+int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) {
+  const double begin = MPI_Wtime();
+  const RunFiles files{arguments.output.empty() ? scene.output.directory : arguments.output};
+  on_root(comm, [&] { require_writable(files("summary.json")); });
+  auto built = build_scene(comm, scene);
+  reject_unused_options(comm, arguments.allow_unknown_options);
+  auto& simulation = *built.simulation;
+  if (!arguments.restart.empty()) restore(simulation, arguments.restart, fingerprint_of(scene));
+  auto observers = make_observers(scene, simulation, files, arguments);
+
+  const auto end = run_loop(simulation, scene.end_time, observers.all);
+
+  if (end == RunEnd::interrupted) observers.checkpoints->write(simulation);
+  auto summary = summarize(scene, built, observers, end);
+  summary.wall_time = MPI_Wtime() - begin;
+  write_summary(comm, files("summary.json"), summary);
+  if (rank_of(comm) != 0) return end == RunEnd::interrupted ? interrupted : done;
+  if (!arguments.quiet) print_outcome(summary, files);
+  if (end == RunEnd::reached_end_time) return done;
+  std::fprintf(stderr, "evert: interrupted at t = %g s; go on with: evert run %s -restart %s\n", simulation.time(),
+               arguments.scene.c_str(), files("checkpoint.h5").c_str());
+  return interrupted;
+}
+
+}  // namespace
+
+int run_command(MPI_Comm comm, const RunArguments& arguments) {
+  if (arguments.help) {
+    DampingSolver::print_options(comm);
+    return done;
+  }
+  catch_signals();
+  const auto scene = load_scene(comm, arguments.scene, arguments.overrides);
+  apply_petsc_block(scene);
+  return run(comm, scene, arguments);
+}
+
+}  // namespace evert

@@ -1,0 +1,93 @@
+#include "evert/app/run_observers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evert/core/log.hpp"
+
+namespace evert {
+
+void RunStatistics::observe(Simulation& simulation, const StepReport& report) {
+  cg_iterations += report.cg_iterations;
+  if (schedule_.due(simulation.time())) look(simulation);
+}
+
+void RunStatistics::look(const Simulation& simulation) {
+  inverted = simulation.inverted_points();
+  if (inverted <= max_inverted) return;
+  max_inverted = inverted;
+  max_inverted_time = simulation.time();
+}
+
+void FrameObserver::observe(Simulation& simulation, const StepReport& /*report*/) {
+  if (schedule_.due(simulation.time())) write(simulation);
+}
+
+void FrameObserver::finish(Simulation& simulation) {
+  if (!schedule_.due(simulation.time())) write(simulation);  // the last state is worth seeing, whenever it is
+}
+
+void FrameObserver::write(const Simulation& simulation) {
+  // A restart begins at a frame that is there already.
+  const auto frames = writer_.frames();
+  if (!frames.empty() && frames.back().time >= simulation.time()) return;
+  const PhaseScope scope(Phase::io);
+  writer_.write({simulation.time(), simulation.steps(), simulation.positions(), simulation.velocities(),
+                 [&](std::size_t block, std::span<double> per_cell) { simulation.min_stretch(block, per_cell); }});
+}
+
+double EnergyObserver::next_stop(double time) const {
+  return interval_ > 0 ? Schedule(interval_).next_after(time) : Observer::next_stop(time);
+}
+
+void EnergyObserver::observe(Simulation& simulation, const StepReport& report) {
+  const bool first_of_restart = report.dt == 0 && simulation.steps() > 0;
+  if (first_of_restart || (interval_ > 0 && !Schedule(interval_).due(simulation.time()))) return;
+  const PhaseScope scope(Phase::io);
+  log_.write(simulation.steps(), simulation.time(), simulation.measure());
+}
+
+CheckpointObserver::CheckpointObserver(CheckpointWriter writer, const CheckpointConfig& config)
+    : writer_(std::move(writer)), config_(config), written_at_wall_(MPI_Wtime()) {}
+
+double CheckpointObserver::next_stop(double time) const {
+  return config_.every_simulated ? Schedule(*config_.every_simulated).next_after(time) : Observer::next_stop(time);
+}
+
+bool CheckpointObserver::due(const Simulation& simulation) const {
+  if (config_.every_simulated && Schedule(*config_.every_simulated).due(simulation.time())) return true;
+  if (!config_.every_wall) return false;
+  // The clock of rank 0 decides for all.
+  int late = MPI_Wtime() - written_at_wall_ >= *config_.every_wall ? 1 : 0;
+  MPI_Bcast(&late, 1, MPI_INT, 0, simulation.mesh().comm);
+  return late != 0;
+}
+
+void CheckpointObserver::observe(Simulation& simulation, const StepReport& report) {
+  if (report.dt > 0 && due(simulation)) write(simulation);
+}
+
+void CheckpointObserver::write(const Simulation& simulation) {
+  if (written_at_ == simulation.time()) return;
+  const PhaseScope scope(Phase::io);
+  writer_.write(simulation.positions().owned(), simulation.velocities().owned(), simulation.state_scalars());
+  written_at_ = simulation.time();
+  written_at_wall_ = MPI_Wtime();
+}
+
+ProgressObserver::ProgressObserver(const Simulation& simulation, double end_time, bool quiet,
+                                   const RunStatistics& statistics)
+    : statistics_(statistics),
+      progress_(simulation.mesh().comm, progress_style(quiet), state(simulation), end_time) {}
+
+ProgressState ProgressObserver::state(const Simulation& simulation) const {
+  return {simulation.time(), simulation.steps(), statistics_.inverted, statistics_.cg_iterations};
+}
+
+void ProgressObserver::observe(Simulation& simulation, const StepReport& /*report*/) {
+  if (progress_.due()) progress_.show(state(simulation));
+}
+
+void ProgressObserver::finish(Simulation& simulation) { progress_.finish(state(simulation)); }
+
+}  // namespace evert
