@@ -1,9 +1,9 @@
 #include "evert/materials/material.hpp"
+#include "evert/math/dual.hpp"
 #include "evert/math/pack.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dual.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace evert {
 namespace {
 
-using test::Dual;
+using Number = Dual<double>;
 
 constexpr Lame lame = Lame::from_young_poisson(1e5, 0.4);
 
@@ -66,9 +66,9 @@ TYPED_TEST(Materials, StressIsTheGradientOfTheEnergy) {
   for (const Vec3d& sigma : sample_stretches(limit_of(model))) {
     const Vec3d stress = model.principal_stress(sigma);
     for (int i = 0; i < 3; ++i) {
-      Vec3<Dual> varied{Dual(sigma[0]), Dual(sigma[1]), Dual(sigma[2])};
-      varied[i].slope = 1;
-      EXPECT_NEAR(model.energy(varied).slope, stress[i], 1e-13 * (norm(stress) + lame.mu))
+      Vec3<Number> varied{sigma[0], sigma[1], sigma[2]};
+      varied[i].derivative = 1;
+      EXPECT_NEAR(model.energy(varied).derivative, stress[i], 1e-13 * (norm(stress) + lame.mu))
           << sigma[0] << ' ' << sigma[1] << ' ' << sigma[2];
     }
   }
@@ -98,11 +98,11 @@ TYPED_TEST(Materials, StressDerivativeIsTheDerivativeOfTheStress) {
     const Mat3d tangent = model.stress_derivative(sigma);
     const double scale = norm(tangent.column[0]) + norm(tangent.column[1]) + norm(tangent.column[2]);
     for (int j = 0; j < 3; ++j) {
-      Vec3<Dual> varied{Dual(sigma[0]), Dual(sigma[1]), Dual(sigma[2])};
-      varied[j].slope = 1;
-      const Vec3<Dual> stress = model.principal_stress(varied);
+      Vec3<Number> varied{sigma[0], sigma[1], sigma[2]};
+      varied[j].derivative = 1;
+      const Vec3<Number> stress = model.principal_stress(varied);
       for (int i = 0; i < 3; ++i) {
-        EXPECT_NEAR(stress[i].slope, tangent(i, j), 1e-13 * scale)
+        EXPECT_NEAR(stress[i].derivative, tangent(i, j), 1e-13 * scale)
             << sigma[0] << ' ' << sigma[1] << ' ' << sigma[2];
         EXPECT_EQ(tangent(i, j), tangent(j, i));
       }
