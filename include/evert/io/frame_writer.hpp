@@ -38,6 +38,9 @@ struct FrameSource {
   std::function<void(std::size_t block, std::span<double> per_cell)> min_stretch;
 };
 
+/// The present state of a simulation, which must outlive the result.
+[[nodiscard]] FrameSource frame_source(const Simulation& simulation);
+
 /// A frame that is in the file.
 struct WrittenFrame {
   std::string group;

@@ -1,0 +1,41 @@
+#pragma once
+#include "evert/core/index.hpp"
+#include "evert/sim/simulation.hpp"
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evert {
+
+/// What a run leaves behind about itself. The application fills it.
+struct RunSummary {
+  std::string scene;    ///< its name
+  std::string outcome;  ///< "finished", "interrupted" or what failed
+  GlobalIndex nodes = 0;
+  GlobalIndex cells = 0;
+  std::int64_t steps = 0;
+  double simulated_time = 0;  ///< [s]
+  double wall_time = 0;       ///< [s]
+  std::int64_t cg_iterations = 0;
+  std::int64_t frames = 0;
+  GlobalIndex max_inverted_points = 0;
+  double max_inverted_time = 0;  ///< [s] when there were most
+  GlobalIndex quadrature_points = 0;
+  Measurements final_state;
+  std::vector<std::pair<std::string, double>> shape_errors;  ///< per body: rms distance to its rest shape [m]
+  std::string cpu_level;  ///< instruction set of the kernels: x86-64-v2, -v3 or -v4
+};
+
+/// Collective. Writes summary.json in one step: the above, the wall time booked to each phase (mean and
+/// largest over the ranks), peak memory of each rank, number of ranks, versions of evert, PETSc, MPI and
+/// HDF5. Throws UserError on all ranks when it cannot be written.
+void write_summary(MPI_Comm comm, const std::string& path, const RunSummary& summary);
+
+/// Largest resident size of this process so far [bytes].
+[[nodiscard]] std::int64_t peak_memory();
+
+}  // namespace evert
