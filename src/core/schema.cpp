@@ -36,7 +36,8 @@ double read_number(const Value& value, const std::string& path, const std::strin
   const auto& text = scalar(value, path, expected);
   const auto wrong = [&](const std::string& why) { fail(value, path, shown(value) + why); };
   if (value.quoted) wrong(" is text in quotes: must be " + expected);
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");  // from_chars knows no plus
+  const char* begin = text.data() + (plus ? 1 : 0);
   const char* end = text.data() + text.size();
   double number = 0;
   const auto result = std::from_chars(begin, end, number);
