@@ -49,6 +49,24 @@ std::vector<GlobalIndex> natural_of_local_nodes(const DistributedMesh& mesh) {
   return result;
 }
 
+/// Collective: rank 0 looks.
+bool exists(MPI_Comm comm, const std::string& path) {
+  int found = 0;
+  on_root(comm, [&] { found = std::filesystem::exists(path) ? 1 : 0; });
+  MPI_Bcast(&found, 1, MPI_INT, 0, comm);
+  return found == 1;
+}
+
+/// Throws UserError unless the file can go on with this mesh. Not collective.
+void require_run_of(const DistributedMesh& mesh, const std::string& path) {
+  require_writable(path);
+  const RunReader run(path);
+  if (run.node_count() == mesh.total_nodes && run.cell_count() == mesh.total_cells) return;
+  throw UserError("cannot continue '" + path + "': it has " + std::to_string(run.node_count()) +
+                  " nodes and " + std::to_string(run.cell_count()) + " cells, the mesh has " +
+                  std::to_string(mesh.total_nodes) + " and " + std::to_string(mesh.total_cells));
+}
+
 RowRange slice_of(const NaturalOrder& order) {
   return {order.first(), static_cast<GlobalIndex>(order.slice_size())};
 }
@@ -73,15 +91,8 @@ FrameWriter::FrameWriter(const DistributedMesh& mesh, const std::string& path, c
 FrameWriter FrameWriter::continue_from(const DistributedMesh& mesh, const std::string& path,
                                        const FrameFields& fields, double time) {
   const PhaseScope phase(Phase::io);
-  std::vector<WrittenFrame> frames;
-  on_root(mesh.comm, [&] {
-    require_writable(path);
-    const RunReader run(path);
-    if (run.node_count() != mesh.total_nodes || run.cell_count() != mesh.total_cells)
-      throw UserError("cannot continue '" + path + "': it has " + std::to_string(run.node_count()) +
-                      " nodes and " + std::to_string(run.cell_count()) + " cells, the mesh has " +
-                      std::to_string(mesh.total_nodes) + " and " + std::to_string(mesh.total_cells));
-  });
+  if (!exists(mesh.comm, path)) return {mesh, path, fields};
+  on_root(mesh.comm, [&] { require_run_of(mesh, path); });
   FrameWriter writer(mesh, Hdf5File::open(mesh.comm, path, Hdf5File::Access::write), fields);
   for (const auto& name : writer.file_.names_in("/frames")) {
     const std::string group = "/frames/" + name;

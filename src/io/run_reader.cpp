@@ -80,6 +80,8 @@ Mesh RunReader::mesh() const {
   return mesh;
 }
 
+bool RunReader::has_ranks() const { return file_.contains(run_layout::rank); }
+
 std::vector<std::int32_t> RunReader::ranks() const { return cell_values<std::int32_t>(run_layout::rank); }
 
 std::vector<Vec3d> RunReader::positions(std::size_t frame) const {

@@ -12,7 +12,9 @@ namespace evert {
 void write_gmsh41(const Mesh& mesh, OutputFile& out);
 void write_gmsh22(const Mesh& mesh, OutputFile& out);
 void write_medit(const Mesh& mesh, OutputFile& out);
-void write_vtk(const Mesh& mesh, std::span<const CellField> fields, OutputFile& out);
-void write_vtu(const Mesh& mesh, std::span<const CellField> fields, OutputFile& out);
+void write_vtk(const Mesh& mesh, std::span<const CellField> fields, std::span<const NodeVectors> vectors,
+               OutputFile& out);
+void write_vtu(const Mesh& mesh, std::span<const CellField> fields, std::span<const NodeVectors> vectors,
+               OutputFile& out);
 
 }  // namespace evert

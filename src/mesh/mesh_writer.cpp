@@ -6,6 +6,13 @@
 #include <algorithm>
 
 namespace evert {
+namespace {
+
+GlobalIndex size_of(const CellField& field) {
+  return std::visit([](const auto& values) { return static_cast<GlobalIndex>(values.size()); }, field.values);
+}
+
+}  // namespace
 
 MeshFormat mesh_format_of(const std::filesystem::path& path) {
   const auto extension = path.extension().string();
@@ -18,11 +25,12 @@ MeshFormat mesh_format_of(const std::filesystem::path& path) {
 }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat format,
-                std::span<const CellField> fields) {
-  if (!fields.empty() && format != MeshFormat::vtk && format != MeshFormat::vtu)
+                std::span<const CellField> fields, std::span<const NodeVectors> vectors) {
+  if (!(fields.empty() && vectors.empty()) && format != MeshFormat::vtk && format != MeshFormat::vtu)
     throw UserError(path.string() + ": cell fields can be written to .vtk and .vtu files only");
-  for (const auto& field : fields)
-    EVERT_ASSERT(static_cast<GlobalIndex>(field.values.size()) == mesh.cell_count(), field.name);
+  for (const auto& field : fields) EVERT_ASSERT(size_of(field) == mesh.cell_count(), field.name);
+  for (const auto& field : vectors)
+    EVERT_ASSERT(static_cast<GlobalIndex>(field.values.size()) == mesh.node_count(), field.name);
   OutputFile out(path);
   switch (format) {
     case MeshFormat::gmsh41:
@@ -35,10 +43,10 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat 
       write_medit(mesh, out);
       break;
     case MeshFormat::vtk:
-      write_vtk(mesh, fields, out);
+      write_vtk(mesh, fields, vectors, out);
       break;
     case MeshFormat::vtu:
-      write_vtu(mesh, fields, out);
+      write_vtu(mesh, fields, vectors, out);
       break;
   }
   out.commit();

@@ -50,6 +50,14 @@ void write_array(OutputFile& out, std::string_view name, std::span<const T> valu
       << to_base64(bytes) << "\n</DataArray>\n";
 }
 
+std::vector<double> flattened(std::span<const Vec3d> vectors) {
+  std::vector<double> values;
+  values.reserve(3 * vectors.size());
+  for (const auto& vector : vectors)
+    values.insert(values.end(), vector.components.begin(), vector.components.end());
+  return values;
+}
+
 void write_region_names(const Mesh& mesh, OutputFile& out) {
   out << "<FieldData>\n<DataArray type=\"String\" Name=\"" << region_names_array << "\" NumberOfTuples=\""
       << static_cast<std::int64_t>(mesh.regions.size()) << "\" format=\"ascii\">\n";
@@ -83,37 +91,40 @@ void write_cell_data(const Mesh& mesh, std::span<const CellField> fields, Output
     regions.insert(regions.end(), block.region.begin(), block.region.end());
   out << "<CellData>\n";
   write_array<std::int32_t>(out, region_array, regions);
-  for (const auto& field : fields) write_array<std::int32_t>(out, field.name, field.values);
+  for (const auto& field : fields)
+    std::visit(
+        [&](const auto& values) {
+          write_array<typename std::decay_t<decltype(values)>::value_type>(out, field.name, values);
+        },
+        field.values);
   out << "</CellData>\n";
 }
 
-void write_point_data(const Mesh& mesh, OutputFile& out) {
+void write_point_data(const Mesh& mesh, std::span<const NodeVectors> vectors, OutputFile& out) {
   out << "<PointData>\n";
   for (const auto& set : mesh.node_sets) {
     std::vector<std::uint8_t> members(mesh.nodes.size(), 0);
     for (const auto node : set.nodes) members[static_cast<std::size_t>(node)] = 1;
     write_array<std::uint8_t>(out, std::string(node_set_prefix) + set.name, members);
   }
+  for (const auto& field : vectors) write_array<double>(out, field.name, flattened(field.values), 3);
   out << "</PointData>\n";
 }
 
 }  // namespace
 
-void write_vtu(const Mesh& mesh, std::span<const CellField> fields, OutputFile& out) {
+void write_vtu(const Mesh& mesh, std::span<const CellField> fields, std::span<const NodeVectors> vectors,
+               OutputFile& out) {
   const bool little = std::endian::native == std::endian::little;
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
       << (little ? "LittleEndian" : "BigEndian") << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n";
   write_region_names(mesh, out);
   out << "<Piece NumberOfPoints=\"" << mesh.node_count() << "\" NumberOfCells=\"" << mesh.cell_count()
       << "\">\n";
-  write_point_data(mesh, out);
+  write_point_data(mesh, vectors, out);
   write_cell_data(mesh, fields, out);
-  std::vector<double> coordinates;
-  coordinates.reserve(3 * mesh.nodes.size());
-  for (const auto& position : mesh.nodes)
-    coordinates.insert(coordinates.end(), position.components.begin(), position.components.end());
   out << "<Points>\n";
-  write_array<double>(out, "Points", coordinates, 3);
+  write_array<double>(out, "Points", flattened(mesh.nodes), 3);
   out << "</Points>\n";
   write_cells(mesh, out);
   out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";

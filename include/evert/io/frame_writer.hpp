@@ -55,7 +55,8 @@ class FrameWriter {
  public:
   /// Begins a new file at `path`, which ends in .h5. `mesh` must outlive the writer.
   FrameWriter(const DistributedMesh& mesh, const std::string& path, const FrameFields& fields);
-  /// Goes on with the file of an earlier run of the same mesh, without its frames after `time` [s].
+  /// Goes on with the file of an earlier run of the same mesh, without its frames after `time` [s]; begins a
+  /// new one where there is none.
   [[nodiscard]] static FrameWriter continue_from(const DistributedMesh& mesh, const std::string& path,
                                                  const FrameFields& fields, double time);
 

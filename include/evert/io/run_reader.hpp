@@ -23,12 +23,15 @@ class RunReader {
  public:
   explicit RunReader(const std::string& path);
 
+  [[nodiscard]] const std::string& path() const { return file_.path(); }
   [[nodiscard]] GlobalIndex node_count() const { return node_count_; }
   [[nodiscard]] GlobalIndex cell_count() const { return cell_count_; }
   [[nodiscard]] const std::vector<RunFrame>& frames() const { return frames_; }
 
   /// Rest positions, cells and their regions; no node sets.
   [[nodiscard]] Mesh mesh() const;
+  /// Whether the ranks of the cells are in the file.
+  [[nodiscard]] bool has_ranks() const;
   /// Rank of each cell.
   [[nodiscard]] std::vector<std::int32_t> ranks() const;
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace evert {
@@ -24,15 +25,21 @@ enum class MeshFormat {
 /// A number per cell to be written along, all blocks in order.
 struct CellField {
   std::string name;
-  std::vector<std::int32_t> values;
+  std::variant<std::vector<std::int32_t>, std::vector<double>> values;
+};
+
+/// A vector per node to be written along.
+struct NodeVectors {
+  std::string name;
+  std::vector<Vec3d> values;
 };
 
 /// Writes the mesh such that read_mesh gives it back: same numbers to the last bit, same order. The file
 /// appears under its name only once it is complete. Not collective. Throws UserError when it cannot be
-/// written (no folder, no permission, disk full), or when `fields` are given for a format that cannot hold
-/// them (all but VTK's).
+/// written (no folder, no permission, disk full), or when `fields` or `vectors` are given for a format
+/// that cannot hold them (all but VTK's).
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat format,
-                std::span<const CellField> fields = {});
+                std::span<const CellField> fields = {}, std::span<const NodeVectors> vectors = {});
 /// The same in the format of the extension.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, std::span<const CellField> fields = {});
 

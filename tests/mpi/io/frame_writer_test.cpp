@@ -167,6 +167,14 @@ TEST(FrameWriter, ContinuesARunWithoutItsLaterFrames) {
   if (rank_of(world) == 0) expect_frames(RunReader(scratch / "run.h5"), 4, 0.25);
 }
 
+TEST(FrameWriter, ContinuesWhereThereIsNoRunByBeginning) {
+  const test::Scratch scratch;
+  Motion motion(test::tet_cube(2));
+  auto writer = FrameWriter::continue_from(motion.mesh(), scratch / "new/run.h5", {}, 0.5);
+  writer.write(motion.at(0));
+  if (rank_of(world) == 0) expect_frames(RunReader(scratch / "new/run.h5"), 1, 0.25);
+}
+
 TEST(FrameWriter, ContinuesOnlyARunOfTheSameMesh) {
   const test::Scratch scratch;
   Motion motion(test::tet_cube(2));
