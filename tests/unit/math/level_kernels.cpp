@@ -7,7 +7,7 @@
 #define EVERT_NAME_OF(level) #level
 #define EVERT_STRING(level) EVERT_NAME_OF(level)
 
-namespace evert::test::EVERT_LEVEL {
+namespace evert::test::EVERT_KERNEL_LEVEL {
 
 namespace {
 
@@ -66,12 +66,16 @@ void isotropic_of_arrays(const double* f, IsotropicArrays result, std::size_t co
   }
 }
 
-constexpr LevelKernels level_kernels{
-    EVERT_STRING(EVERT_LEVEL), lanes_v<Pack>,  lanes_v<FloatPack>, operate<Pack>,
-    operate<FloatPack>,        svd3_of_arrays, isotropic_of_arrays};
+constexpr LevelKernels level_kernels{EVERT_STRING(EVERT_KERNEL_LEVEL),
+                                     lanes_v<Pack>,
+                                     lanes_v<FloatPack>,
+                                     operate<Pack>,
+                                     operate<FloatPack>,
+                                     svd3_of_arrays,
+                                     isotropic_of_arrays};
 
 }  // namespace
 
 const LevelKernels& kernels() { return level_kernels; }
 
-}  // namespace evert::test::EVERT_LEVEL
+}  // namespace evert::test::EVERT_KERNEL_LEVEL
