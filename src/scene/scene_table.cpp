@@ -67,8 +67,27 @@ std::string default_directory(std::string name) {
   return "runs/" + name;
 }
 
+/// Throws when an interval [s] fits into the duration so often that time would stand still.
+void expect_countable(double interval, double end_time, const Value& map, const char* table,
+                      const char* key) {
+  constexpr double most = 1e9;
+  if (end_time / interval <= most) return;
+  const auto& value = *map.find(table)->find(key);
+  fail(value, join(table, key),
+       shown(value) + " is not allowed: it makes more than 1e9 of them until end_time");
+}
+
 void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*path*/) {
   if (scene.output.directory.empty()) scene.output.directory = default_directory(scene.name);
+  if (scene.integrator.time_step)
+    expect_countable(*scene.integrator.time_step, scene.end_time, map, "integrator", "time_step");
+  if (scene.output.frames_per_second)
+    expect_countable(1 / *scene.output.frames_per_second, scene.end_time, map, "output", "frames_per_second");
+  if (scene.output.energy_log.value_or(0) > 0)
+    expect_countable(*scene.output.energy_log, scene.end_time, map, "output", "energy_log");
+  if (scene.checkpoint && scene.checkpoint->every_simulated)
+    expect_countable(*scene.checkpoint->every_simulated, scene.end_time, map, "checkpoint",
+                     "every_simulated");
   if (scene.bodies.empty()) fail(*map.find("bodies"), "bodies", "must name at least one body");
   for (const auto& [name, value] : scene.petsc)
     if (name.starts_with('-'))

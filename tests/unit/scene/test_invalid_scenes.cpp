@@ -197,6 +197,15 @@ const std::vector<Mistake> mistakes{
      "scene.yaml:39: constraints[1].velocity: must be a list of 3 numbers, not of 0"},
     {"no_checkpoint_interval", "{every_simulated: 0.5, every_wall: 600}", "{}",
      "scene.yaml:44: checkpoint: needs 'every_simulated' [s], 'every_wall' [s] or both"},
+    {"standing_time", "time_step: 1e-4", "time_step: 1e-300",
+     "scene.yaml:43: integrator.time_step: '1e-300' is not allowed: it makes more than 1e9 of them until "
+     "end_time"},
+    {"endless_frames", "frames_per_second: 30", "frames_per_second: 1e300",
+     "scene.yaml:6: output.frames_per_second: '1e300' is not allowed: it makes more than 1e9 of them until "
+     "end_time"},
+    {"endless_checkpoints", "every_simulated: 0.5", "every_simulated: 1e-20",
+     "scene.yaml:44: checkpoint.every_simulated: '1e-20' is not allowed: it makes more than 1e9 of them "
+     "until end_time"},
     // names
     {"constraint_on_nothing", "body: torus", "body: tours",
      "scene.yaml:40: constraints[2].body: there is no body 'tours': must be torus or box (did you mean "
