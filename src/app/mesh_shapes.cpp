@@ -1,0 +1,88 @@
+#include "mesh_shapes.hpp"
+
+#include "evert/core/error.hpp"
+#include "evert/mesh/generators.hpp"
+
+#include "mesh_options.hpp"
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace evert {
+namespace {
+
+/// A shape that can be generated: the options it takes besides -o, and what makes it of them.
+struct Shape {
+  std::string name;
+  std::vector<std::string> options;
+  std::function<Mesh(const MeshOptions&)> make;
+};
+
+BoxCells box_cells(const std::string& name) {
+  const std::map<std::string, BoxCells> kinds{{"bcc", BoxCells::bcc},
+                                              {"tet5", BoxCells::tet5},
+                                              {"tet6", BoxCells::tet6},
+                                              {"hex8", BoxCells::hex8},
+                                              {"wedge6", BoxCells::wedge6}};
+  if (const auto found = kinds.find(name); found != kinds.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [known, kind] : kinds) names.push_back(known);
+  throw UserError("evert mesh generate box: there is no cell '" + name + "': must be " + list_of(names) +
+                  did_you_mean(name, names));
+}
+
+Mesh make_box(const MeshOptions& options) {
+  const auto cells = options.has("cell") ? box_cells(options.text("cell")) : BoxCells::bcc;
+  if (options.has("cells") == options.has("edge_length"))
+    throw UserError("evert mesh generate box needs either -edge_length or -cells");
+  const auto size = options.three_numbers("size");
+  return options.has("cells") ? generate_box(size, options.three_whole_numbers("cells"), cells)
+                              : generate_box(size, options.number("edge_length"), cells);
+}
+
+/// A shape filled by stuffing: all take -edge_length.
+Shape implicit(std::string name, std::vector<std::string> options,
+               std::function<ImplicitShape(const MeshOptions&)> shape) {
+  options.emplace_back("edge_length");
+  return {std::move(name), std::move(options), [shape = std::move(shape)](const MeshOptions& values) {
+            return generate(shape(values), values.number("edge_length"));
+          }};
+}
+
+const std::vector<Shape>& shapes() {
+  static const std::vector<Shape> table{
+      {"box", {"size", "edge_length", "cells", "cell"}, make_box},
+      implicit("ball", {"radius"}, [](const MeshOptions& o) { return ball(o.number("radius")); }),
+      implicit(
+          "torus", {"major_radius", "minor_radius"},
+          [](const MeshOptions& o) { return torus(o.number("major_radius"), o.number("minor_radius")); }),
+      implicit("cylinder", {"radius", "length"},
+               [](const MeshOptions& o) { return cylinder(o.number("radius"), o.number("length")); }),
+      implicit("capsule", {"radius", "length"},
+               [](const MeshOptions& o) { return capsule(o.number("radius"), o.number("length")); }),
+      implicit("ellipsoid", {"radii"},
+               [](const MeshOptions& o) { return ellipsoid(o.three_numbers("radii")); }),
+  };
+  return table;
+}
+
+}  // namespace
+
+GenerateRequest generate_mesh(std::span<const std::string> arguments) {
+  std::vector<std::string> names;
+  for (const auto& shape : shapes()) names.push_back(shape.name);
+  if (arguments.empty() || arguments.front().starts_with('-'))
+    throw UserError("evert mesh generate needs a shape: " + list_of(names));
+  for (const auto& shape : shapes()) {
+    if (shape.name != arguments.front()) continue;
+    auto with_value = shape.options;
+    with_value.emplace_back("o");
+    const MeshOptions options("generate " + shape.name, arguments.subspan(1), with_value, {}, {});
+    auto output = options.text("o");  // before the work
+    return {shape.make(options), std::move(output)};
+  }
+  throw UserError("evert mesh generate: there is no shape '" + arguments.front() + "': must be " +
+                  list_of(names) + did_you_mean(arguments.front(), names));
+}
+
+}  // namespace evert
