@@ -63,6 +63,7 @@ std::string usage() {
   evert check scene.yaml [-set key=value]                 validate without running: what would be built
   evert explain [key]                                     the scene reference
   evert mesh generate|convert|quality|partition           make and examine meshes
+  evert view run.h5                                       a web page that plays the frames of a run
   evert run -help                                         every option of a run
   evert --version
 

@@ -13,6 +13,7 @@
 #include "evert/app/explain_command.hpp"
 #include "evert/app/mesh_command.hpp"
 #include "evert/app/run_command.hpp"
+#include "evert/app/view_command.hpp"
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
 #include "evert/core/log.hpp"
@@ -46,6 +47,7 @@ int dispatch(const std::string& command, const Arguments& arguments) {
       {"check", [](const Arguments& rest) { return evert::check_command(rest, std::cout); }},
       {"explain", [](const Arguments& rest) { return evert::explain_command(rest, std::cout); }},
       {"mesh", [](const Arguments& rest) { return evert::mesh_command(rest, std::cout); }},
+      {"view", [](const Arguments& rest) { return evert::view_command(rest, std::cout); }},
   };
   if (command == "run") return evert::run_command(MPI_COMM_WORLD, evert::parse_run_arguments(arguments));
   if (const auto found = serial.find(command); found != serial.end()) return on_rank_zero(found->second, arguments);

@@ -30,7 +30,8 @@ void sort_and_unite(std::vector<T>& values) {
 
 std::vector<std::int32_t> regions_of_cells(const Mesh& mesh) {
   std::vector<std::int32_t> regions;
-  for (const auto& block : mesh.cells) regions.insert(regions.end(), block.region.begin(), block.region.end());
+  for (const auto& block : mesh.cells)
+    regions.insert(regions.end(), block.region.begin(), block.region.end());
   return regions;
 }
 
@@ -47,13 +48,13 @@ double area_of(const Surface& surface, std::span<const Vec3d> positions) {
 using Box = std::array<std::int64_t, 4>;
 
 std::vector<Box> boxes_of(const Surface& surface, std::span<const Vec3d> positions, double size) {
+  const auto [lower, upper] = bounds_of(positions);
   std::vector<Box> boxes;
   boxes.reserve(surface.nodes.size());
   for (std::size_t v = 0; v < surface.nodes.size(); ++v) {
-    const auto& position = positions[static_cast<std::size_t>(surface.nodes[v])];
+    const auto above = positions[static_cast<std::size_t>(surface.nodes[v])] - lower;
     Box box{surface.regions[v]};
-    for (std::size_t c = 0; c < 3; ++c)
-      box[c + 1] = static_cast<std::int64_t>(std::floor(position[c] / size));
+    for (std::size_t c = 0; c < 3; ++c) box[c + 1] = static_cast<std::int64_t>(above[c] / size);
     boxes.push_back(box);
   }
   return boxes;
@@ -70,11 +71,13 @@ std::vector<std::uint32_t> representatives(const Surface& surface, std::span<con
   std::vector<std::uint32_t> chosen(boxes.size());
   const auto at = [&](std::uint32_t v) { return positions[static_cast<std::size_t>(surface.nodes[v])]; };
   for (auto first = order.begin(); first != order.end();) {
-    const auto last = std::find_if(first, order.end(), [&](std::uint32_t v) { return boxes[v] != boxes[*first]; });
+    const auto last =
+        std::find_if(first, order.end(), [&](std::uint32_t v) { return boxes[v] != boxes[*first]; });
     Vec3d mean{};
     for (auto v = first; v != last; ++v) mean += at(*v);
     mean = mean * (1 / static_cast<double>(last - first));
-    const auto nearest = *std::ranges::min_element(first, last, {}, [&](auto v) { return norm(at(v) - mean); });
+    const auto nearest =
+        *std::ranges::min_element(first, last, {}, [&](auto v) { return norm(at(v) - mean); });
     for (; first != last; ++first) chosen[*first] = nearest;
   }
   return chosen;
@@ -113,6 +116,17 @@ Surface replaced(const Surface& surface, std::span<const std::uint32_t> by) {
 
 }  // namespace
 
+std::pair<Vec3d, Vec3d> bounds_of(std::span<const Vec3d> positions) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::pair<Vec3d, Vec3d> bounds{{far, far, far}, {-far, -far, -far}};
+  for (const auto& position : positions)
+    for (std::size_t c = 0; c < 3; ++c) {
+      bounds.first[c] = std::min(bounds.first[c], position[c]);
+      bounds.second[c] = std::max(bounds.second[c], position[c]);
+    }
+  return bounds;
+}
+
 Surface surface_of(const Mesh& mesh) {
   const auto faces = boundary_faces(mesh);
   const auto regions = regions_of_cells(mesh);
@@ -139,7 +153,9 @@ Surface surface_of(const Mesh& mesh) {
 Surface simplified(const Surface& surface, std::span<const Vec3d> positions, std::size_t max_triangles) {
   if (surface.triangles.size() <= max_triangles) return surface;
   // A box that the surface crosses squarely makes 2 triangles; what is thinner than that needs larger boxes.
-  double size = std::sqrt(2 * area_of(surface, positions) / static_cast<double>(max_triangles));
+  const auto [lower, upper] = bounds_of(positions);
+  const double squarely = std::sqrt(2 * area_of(surface, positions) / static_cast<double>(max_triangles));
+  double size = std::max({squarely, 1e-6 * norm(upper - lower), std::numeric_limits<double>::min()});
   for (;; size *= 1.15) {
     auto smaller = replaced(surface, representatives(surface, positions, size));
     if (smaller.triangles.size() <= max_triangles) return smaller;
