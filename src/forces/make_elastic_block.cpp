@@ -1,3 +1,4 @@
+#include "evert/elements/reference_element.hpp"
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/cpu_level.hpp"
 
@@ -6,7 +7,8 @@ namespace evert {
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
                                                  std::span<const Vec3d> rest_positions,
                                                  const Material& material, const Damping& damping) {
-  const auto kernels = kernels::find_kernels(kernels::cpu_level(), cells.type, material, damping.model);
+  with_reference_element(cells.type, [](const auto& /*exists*/) {});  // or throws, naming the types allowed
+  const auto kernels = kernels::chosen_cpu_level().find(cells.type, material, damping.model);
   return make_elastic_block(cells, rest_positions, material, damping, kernels);
 }
 

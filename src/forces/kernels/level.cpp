@@ -1,4 +1,3 @@
-#include "evert/forces/kernels/cpu_level.hpp"
 #include "evert/forces/kernels/kernel_table.hpp"
 
 // Compiled once per CPU level, each time with another -march and EVERT_KERNEL_LEVEL, which makes Pack another
