@@ -83,7 +83,7 @@ std::string run_usage() {
 Solvers, also as a 'petsc:' block of the scene (the command line wins):
   -damping_mat_type shell    operator of the damping solves: shell (matrix-free), baij, sbaij or aij
   -damping_ksp_type cg       any KSP for symmetric positive definite systems
-  -damping_ksp_rtol 1e-6     relative to the change that the step asks for
+  -damping_ksp_rtol 1e-8     relative to the change of momentum that the step asks for
   -damping_pc_type pbjacobi  shell: pbjacobi, jacobi, none; assembled: also gamg, hypre, icc, bjacobi, ...
   -damping_ksp_monitor, -damping_ksp_view, -log_view, -options_file, ...   as in any PETSc program
 

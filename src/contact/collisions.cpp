@@ -7,21 +7,19 @@
 namespace evert {
 namespace {
 
-/// The share of a tangential velocity of size `speed` that Coulomb friction takes away when the normal velocity
-/// changes by `normal_change` ≥ 0: 1 is sticking.  PHYSICS 8
-double friction_share(double coefficient, double normal_change, double speed) {
+/// The part along the surface of a velocity relative to the body's.
+Vec3d along_surface(const Vec3d& relative, const Vec3d& normal) { return relative - dot(relative, normal) * normal; }
+
+/// Coulomb friction on a sliding velocity when the normal velocity changes by `normal_change` ≥ 0: it shrinks by
+/// the coefficient times that and never turns round.  PHYSICS 8
+Vec3d rubbed(const Vec3d& sliding, double coefficient, double normal_change) {
+  const double speed = norm(sliding);
   const double change = coefficient * normal_change;
-  return change >= speed ? 1.0 : change / speed;
+  return change >= speed ? Vec3d{} : (1 - change / speed) * sliding;
 }
 
-/// Takes the part of `v` relative to `body_velocity` and along the surface, and applies friction to it.
-Vec3d rub(const Vec3d& v, const Vec3d& body_velocity, const Vec3d& normal, double coefficient, double normal_change) {
-  const auto relative = v - body_velocity;
-  const auto tangential = relative - dot(relative, normal) * normal;
-  const double speed = norm(tangential);
-  if (speed == 0) return v;
-  return v - friction_share(coefficient, normal_change, speed) * tangential;
-}
+/// Sliding slower than this share of the velocities involved is rounding.
+constexpr double standstill = 1e-12;
 
 }  // namespace
 
@@ -57,7 +55,7 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
     impulse_ += masses_[static_cast<std::size_t>(node)] * (velocity - node_value(v, node));
     set_node_value(x, node, position);
     set_node_value(v, node, velocity);
-    constrain(first_contact, velocity);
+    constrain(std::span(contacts_).subspan(first_contact), velocity);
   }
 }
 
@@ -67,35 +65,81 @@ void Collisions::resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predict
     if (distance >= 0) continue;
     const auto normal = obstacle->normal(x, step.end);
     const auto body_velocity = obstacle->velocity(x, step.end);
-    // The position: out of the body, which is a change −φ/Δt of the velocity that led here, with its friction.
-    const auto rubbed = rub(predicted, body_velocity, normal, obstacle->friction(), -distance / step.dt);
-    x += step.dt * (rubbed - predicted) - distance * normal;
-    predicted = rubbed;
     // The velocity: an inelastic impact, unless the node separates already.
-    const double approach = std::max(0.0, -dot(v - body_velocity, normal));
-    v = rub(v + approach * normal, body_velocity, normal, obstacle->friction(), approach);
-    contacts_.push_back({node, obstacle.get(), normal, body_velocity});
+    const auto relative = v - body_velocity;
+    const double approach = std::max(0.0, -dot(relative, normal));
+    const auto sliding = along_surface(relative, normal);
+    const auto slides_on = rubbed(sliding, obstacle->friction(), approach);
+    v += approach * normal + (slides_on - sliding);
+    const bool sticks =
+        obstacle->friction() > 0 && norm(slides_on) <= standstill * (norm(v) + norm(body_velocity));
+    // The position: out of the body, which is a change −φ/Δt of the velocity that led here, with its friction.
+    const auto led_along = along_surface(predicted - body_velocity, normal);
+    const auto left_along = sticks ? Vec3d{} : rubbed(led_along, obstacle->friction(), -distance / step.dt);
+    x += step.dt * (left_along - led_along) - distance * normal;
+    predicted += left_along - led_along;
+    contacts_.push_back({node, obstacle.get(), normal, body_velocity, sticks});
   }
 }
 
-void Collisions::constrain(std::size_t first_contact, const Vec3d& v) {
-  NodeConstraint constraint{contacts_[first_contact].node, {}, {}};
-  std::array<Vec3d, 3> normals{};  // a fourth independent direction does not exist
-  const auto count = std::min(contacts_.size() - first_contact, normals.size());
-  for (std::size_t i = 0; i < count; ++i) normals[i] = contacts_[first_contact + i].normal;
-  constraint.free = projector_off(std::span(normals).first(count));
+void Collisions::constrain(std::span<const Contact> of_node, Vec3d v) {
+  NodeConstraint constraint{of_node.front().node, {}, {}};
+  const auto holding = std::find_if(of_node.begin(), of_node.end(), [](const Contact& contact) { return contact.sticks; });
+  if (holding != of_node.end()) {
+    v -= along_surface(v - holding->body_velocity, holding->normal);
+  } else {
+    std::array<Vec3d, 3> normals{};  // a fourth independent direction does not exist
+    const auto count = std::min(of_node.size(), normals.size());
+    for (std::size_t i = 0; i < count; ++i) normals[i] = of_node[i].normal;
+    constraint.free = projector_off(std::span(normals).first(count));
+  }
   constraint.prescribed = v - constraint.free * v;
   constraints_.push_back(constraint);
 }
 
-void Collisions::apply_friction(std::span<double> v, std::span<const double> reaction) {
+bool Collisions::slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side) {
+  bool changed = false;
+  constraints_.clear();
+  for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
+    const auto node = contacts_[begin].node;
+    const auto velocity = node_value(v, node);
+    for (end = begin; end < contacts_.size() && contacts_[end].node == node; ++end) {
+      changed = rub(contacts_[end], velocity, node_value(reaction, node)) || changed;
+      set_node_value(right_side, node, node_value(right_side, node) + contacts_[end].friction);
+    }
+    constrain(std::span(contacts_).subspan(begin, end - begin), velocity);
+  }
+  return changed;
+}
+
+/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not. Returns whether it changed.
+bool Collisions::rub(Contact& contact, const Vec3d& velocity, const Vec3d& reaction) {
+  const double allowed = contact.obstacle->friction() * std::max(0.0, dot(reaction, contact.normal));
+  const bool stuck = contact.sticks;
+  const bool rubbed_before = contact.friction != Vec3d{};
+  const auto held = along_surface(reaction, contact.normal);
+  const auto motion = along_surface(velocity - contact.body_velocity, contact.normal);
+  contact.sticks = stuck ? norm(held) <= allowed : dot(motion, contact.sliding) < 0;
+  const auto towards = stuck ? -held : motion;
+  const double size = norm(towards);
+  contact.sliding = contact.sticks || size == 0 ? Vec3d{} : (1 / size) * towards;
+  contact.friction = -allowed * contact.sliding;
+  return contact.sticks != stuck || (!rubbed_before && contact.friction != Vec3d{});
+}
+
+Vec3d Collisions::friction() const {
+  Vec3d sum{};
+  for (const auto& contact : contacts_) sum += contact.friction;
+  return sum;
+}
+
+void Collisions::stop_reversed(std::span<double> v) {
   for (const auto& contact : contacts_) {
-    const double mass = masses_[static_cast<std::size_t>(contact.node)];
-    const double normal_change = std::max(0.0, dot(node_value(reaction, contact.node), contact.normal)) / mass;
-    const auto before = node_value(v, contact.node);
-    const auto after = rub(before, contact.body_velocity, contact.normal, contact.obstacle->friction(), normal_change);
-    impulse_ += mass * (after - before);
-    set_node_value(v, contact.node, after);
+    const auto velocity = node_value(v, contact.node);
+    const auto sliding = along_surface(velocity - contact.body_velocity, contact.normal);
+    if (dot(sliding, contact.sliding) >= 0) continue;
+    set_node_value(v, contact.node, velocity - sliding);
+    impulse_ -= masses_[static_cast<std::size_t>(contact.node)] * sliding;
   }
 }
 

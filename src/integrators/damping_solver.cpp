@@ -72,7 +72,7 @@ KspHandle configured_ksp(MPI_Comm comm, const std::string& matrix_type) {
   PC pc = nullptr;
   check(KSPGetPC(ksp.get(), &pc));
   check(PCSetType(pc, matrix_type == "sbaij" ? PCJACOBI : PCPBJACOBI));
-  constexpr double default_rtol = 1e-6;
+  constexpr double default_rtol = 1e-8;  // what momentum is balanced to
   check(KSPSetTolerances(ksp.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   check(KSPSetFromOptions(ksp.get()));
   require_entries_for(ksp.get(), matrix_type);

@@ -1,6 +1,7 @@
 #include "evert/integrators/newmark.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
@@ -8,37 +9,42 @@
 namespace evert {
 namespace {
 
-/// Every owned component of `vec` becomes value(index, component).
-template <class Value>
-void set_vec(Vec vec, Value&& value) {
+// Two passes settle a body that slides; nodes at the edge of sticking take a few more.
+constexpr int most_friction_passes = 5;
+
+/// Hands the owned values of `vec` to `work`.
+template <class Work>
+void change_vec(Vec vec, Work&& work) {
   PetscScalar* data = nullptr;
   PetscInt size = 0;
   check(VecGetLocalSize(vec, &size));
   check(VecGetArray(vec, &data));
-  for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) data[i] = value(i, data[i]);
+  work(std::span<double>(data, static_cast<std::size_t>(size)));
   check(VecRestoreArray(vec, &data));
 }
 
-/// True when any rank says so.
-bool anywhere(MPI_Comm comm, bool here) {
-  int flag = here ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MAX, comm);
-  return flag != 0;
+/// Every owned component of `vec` becomes value(index, component).
+template <class Value>
+void set_vec(Vec vec, Value&& value) {
+  change_vec(vec, [&](std::span<double> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(i, values[i]);
+  });
 }
 
 }  // namespace
 
 Newmark::Newmark(const System& system) : solver_(system.mesh, system.elastic), predicted_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
+  check(VecDuplicate(right_.get(), rubbed_right_.out()));
   constraints_.reserve(system.masses().size());
 }
 
 StepReport Newmark::advance(System& system, double dt) {
   StepReport report{dt, 0, 0};
   report.cg_iterations = predict(system, dt);
-  const bool constrained = collide(system, dt);
-  report.cg_iterations += correct(system, dt);
-  if (constrained) rub(system, dt);
+  const auto held = collide(system, dt);
+  report.cg_iterations += correct(system, dt, held.colliding);
+  if (held.colliding || held.prescribed) report.cg_iterations += rub(system);
   report.contacts = system.collisions.contacts();
   system.time += dt;
   return report;
@@ -66,39 +72,62 @@ int Newmark::predict(System& system, double dt) {
   return iterations;
 }
 
-/// 3. collisions turn x̃ into xⁿ⁺¹ and vⁿ into ṽⁿ. Returns whether any node of any rank is constrained now.
-bool Newmark::collide(System& system, double dt) {
+/// 3. collisions turn x̃ into xⁿ⁺¹ and vⁿ into ṽⁿ. Returns what holds nodes of any rank now.
+Newmark::Held Newmark::collide(System& system, double dt) {
   const PhaseScope scope(Phase::contact);
   constraints_.clear();
-  if (!system.collisions.any_obstacles() && system.prescribed.empty()) return false;
+  if (!system.collisions.any_obstacles() && system.prescribed.empty()) return {};
   prescribed_ = system.prescribed.at(system.time + dt);
   system.collisions.resolve(system.x.owned(), system.v.owned(), predicted_.owned(), prescribed_,
                             {system.time + dt, dt});
   system.x.touched();
   system.v.touched();
   join(prescribed_, system.collisions.constraints(), constraints_);
-  return anywhere(system.mesh.comm, !constraints_.empty());
+  std::array<int, 2> flags{system.collisions.contacts() > 0 ? 1 : 0, prescribed_.empty() ? 0 : 1};
+  MPI_Allreduce(MPI_IN_PLACE, flags.data(), 2, MPI_INT, MPI_MAX, system.mesh.comm);
+  return {flags[0] != 0, flags[1] != 0};
 }
 
 /// 4. (M + Δt/2 C(xⁿ⁺¹)) vⁿ⁺¹ = M ṽⁿ + Δt/2 [f(xⁿ) − C(xⁿ) ṽⁿ + f(xⁿ⁺¹)]
-int Newmark::correct(System& system, double dt) {
+///
+/// In steps with contacts the damping is taken at the end of the step alone, (M + Δt C(xⁿ⁺¹)) vⁿ⁺¹: the trapezoidal rule
+/// lets stiffly damped modes alternate in sign, and the reactions that friction is made of with them.
+int Newmark::correct(System& system, double dt, bool colliding) {
   const auto mass = system.masses();
   const auto v = system.v.owned();
   const auto f = system.f.owned();
+  implicit_ = colliding ? dt : dt / 2;
   set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
-  solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
+  if (!colliding) solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
   system.update_forces();
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
   follow_forces(system);
-  return solver_.solve(dt / 2, right_.get(), system.v, constraints_);
+  return solver_.solve(implicit_, right_.get(), system.v, constraints_);
 }
 
-/// Friction of what the constraints exerted in the solve, and the account of it.
-void Newmark::rub(System& system, double dt) {
-  const auto reaction = solver_.reaction(dt / 2);
-  const PhaseScope scope(Phase::contact);
-  system.collisions.apply_friction(system.v.owned(), reaction);
+/// The solve held whatever friction may hold. Nodes that pull harder than Coulomb allows slide, and those that friction
+/// would turn round stick again: solved once more, with the impulses of sliding friction on the right, until no node
+/// changes between the two. Then the account of what the constraints exerted.
+int Newmark::rub(System& system) {
+  auto& collisions = system.collisions;
+  int iterations = 0;
+  Vec3d friction{};
+  auto reaction = solver_.reaction(implicit_);
+  for (int pass = 0; pass < most_friction_passes; ++pass) {
+    check(VecCopy(right_.get(), rubbed_right_.get()));
+    int again = 0;
+    change_vec(rubbed_right_.get(), [&](std::span<double> b) {
+      again = collisions.slide(system.v.owned(), reaction, b) ? 1 : 0;
+    });
+    MPI_Allreduce(MPI_IN_PLACE, &again, 1, MPI_INT, MPI_MAX, system.mesh.comm);
+    if (again == 0) break;
+    friction = collisions.friction();
+    join(prescribed_, collisions.constraints(), constraints_);
+    iterations += solver_.solve(implicit_, rubbed_right_.get(), system.v, constraints_);
+    reaction = solver_.reaction(implicit_);
+  }
+  collisions.stop_reversed(system.v.owned());
   impose(prescribed_, system.v.owned());
   system.v.touched();
   const auto exerted = [&](std::span<const NodeConstraint> constraints) {
@@ -111,7 +140,8 @@ void Newmark::rub(System& system, double dt) {
   };
   const auto by_prescription = exerted(prescribed_);
   system.impulses.constraint += by_prescription;
-  system.impulses.contact += exerted(constraints_) - by_prescription + system.collisions.impulse();
+  system.impulses.contact += exerted(constraints_) - by_prescription + friction + collisions.impulse();
+  return iterations;
 }
 
 /// C(x) and its diagonal are those of the last force update, whoever asked for it.

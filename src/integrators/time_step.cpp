@@ -16,12 +16,18 @@ constexpr int steps_between_estimates = 4;
 }  // namespace
 
 double TimeStepControl::suggest(System& system) {
+  system.elastic.halo().begin_update(system.v);
+  system.elastic.halo().end_update(system.v);
   const bool estimate = age_ == never || age_ >= steps_between_estimates;
   // One reduction for both limits, as a minimum.
   std::array<double, 2> limits{std::numeric_limits<double>::infinity(), stable_};
   const double rate = system.elastic.max_strain_rate(system.x, system.v);
   if (rate > 0) limits[0] = options_.max_strain_increment / rate;
-  if (estimate) limits[1] = system.elastic.stable_step(system.x).damped;
+  if (estimate) {
+    // At its limit a stiffly damped mode changes sign in every step; at half of it, it decays.
+    const auto bound = system.elastic.stable_step(system.x);
+    limits[1] = std::max(bound.undamped, bound.damped / 2);
+  }
   const bool finite = !std::isnan(rate) && !std::isnan(limits[1]);
   if (!finite) limits = {-1.0, -1.0};
   MPI_Allreduce(MPI_IN_PLACE, limits.data(), 2, MPI_DOUBLE, MPI_MIN, system.mesh.comm);

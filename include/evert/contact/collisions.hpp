@@ -32,16 +32,24 @@ class Collisions {
   void resolve(std::span<double> x, std::span<double> v, std::span<const double> predicted,
                std::span<const NodeConstraint> prescribed, const StepInterval& step);
 
-  /// The normal directions of the nodes that collided in the last resolve(), sorted by node.
+  /// What the colliding nodes must keep in the solve, sorted by node: the normal velocity, and all of it where
+  /// friction holds the node.
   [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }
 
-  /// Friction of the normal impulses that the constraints exerted in the solve: `reaction` = A v − b per owned node
-  /// [N s]. Changes the tangential velocities, at most to the obstacle's.
-  void apply_friction(std::span<double> v, std::span<const double> reaction);
+  /// Friction after a solve with constraints(), from its velocities `v` and `reaction` = A v − b per owned node [N s]:
+  /// nodes whose tangential reaction is more than Coulomb allows are let go, those that have turned round are held,
+  /// and `right_side`, b per owned node, gets the impulses of friction on those that slide. constraints() then holds
+  /// for a solve with it. Returns whether that solve is called for: a node has changed, or was not rubbed before.
+  bool slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side);
+
+  /// After the last solve: friction stops a node and never turns it round.
+  void stop_reversed(std::span<double> v);
 
   /// Nodes that collided in the last resolve() on this rank.
   [[nodiscard]] LocalIndex contacts() const { return static_cast<LocalIndex>(constraints_.size()); }
-  /// Impulse that the obstacles gave to this rank's nodes in the last step, reactions of the solve excepted [N s].
+  /// Sum of the impulses that the last slide() put on the right side [N s]; this rank's share.
+  [[nodiscard]] Vec3d friction() const;
+  /// Impulse of impacts (resolve) and stops (stop_reversed) in the last step [N s]; this rank's share.
   [[nodiscard]] Vec3d impulse() const { return impulse_; }
 
  private:
@@ -51,9 +59,13 @@ class Collisions {
     const Obstacle* obstacle;
     Vec3d normal;
     Vec3d body_velocity;
+    bool sticks;       // friction holds it
+    Vec3d sliding{};   // unit direction, where slide() found it sliding
+    Vec3d friction{};  // impulse that slide() put on it [N s]
   };
   void resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predicted, const StepInterval& step);
-  void constrain(std::size_t first_contact, const Vec3d& v);
+  void constrain(std::span<const Contact> of_node, Vec3d v);
+  static bool rub(Contact& contact, const Vec3d& velocity, const Vec3d& reaction);
 
   std::vector<std::unique_ptr<Obstacle>> obstacles_;
   std::span<const double> masses_;

@@ -28,15 +28,21 @@ class Newmark {
   StepReport advance(System& system, double dt);
 
  private:
+  /// What holds nodes of any rank in a step.
+  struct Held {
+    bool colliding = false;
+    bool prescribed = false;
+  };
   int predict(System& system, double dt);
-  bool collide(System& system, double dt);
-  int correct(System& system, double dt);
-  void rub(System& system, double dt);
+  Held collide(System& system, double dt);
+  int correct(System& system, double dt, bool colliding);
+  int rub(System& system);
   void follow_forces(const System& system);
 
   DampingSolver solver_;
   NodeField predicted_;  // ṽ at the middle of the step
-  VecHandle right_;
+  VecHandle right_, rubbed_right_;
+  double implicit_ = 0;  // s of the last velocity solve, M + s C [s]
   std::span<const NodeConstraint> prescribed_;  // at the end of the step; system.prescribed owns them
   std::vector<NodeConstraint> constraints_;     // those and the normals of colliding nodes
   std::uint64_t forces_seen_ = 0;

@@ -62,7 +62,7 @@ TEST(Collisions, ImpactFrictionIsCoulombs) {
   EXPECT_NEAR(node.v[0], 1 - 0.2 * 3, 1e-15);
   OneNode sticking(0.4);
   sticking.resolve();
-  EXPECT_EQ(sticking.v[0], 0) << "never reverses";
+  EXPECT_NEAR(sticking.v[0], 0, 1e-15) << "never reverses";
 }
 
 TEST(Collisions, PositionFrictionFollowsTheDepth) {
@@ -80,16 +80,43 @@ TEST(Collisions, FollowAMovingBody) {
   EXPECT_DOUBLE_EQ(node.v[0], 5) << "carried along by the belt";
 }
 
-TEST(Collisions, ReactionFrictionIsCoulombsToo) {
+TEST(Collisions, ANodeAtRestSticksUntilItPullsTooHard) {
+  OneNode node(0.25);
+  node.v = {0, 0, 0};
+  node.predicted = {0.3, -0.1, 0};
+  node.resolve();
+  EXPECT_DOUBLE_EQ(node.x[0], -0.1 * 0.3) << "the position does not creep";
+  EXPECT_EQ(node.collisions.constraints().front().free, Mat3d{});
+  std::vector<double> right(3, 0.0);
+  EXPECT_FALSE(node.collisions.slide(node.v, std::vector<double>{-0.9, 4, 0}, right));
+  EXPECT_EQ(node.collisions.constraints().front().free, Mat3d{}) << "within Coulomb's cone";
+  EXPECT_TRUE(node.collisions.slide(node.v, std::vector<double>{-1.1, 4, 0}, right));
+  EXPECT_NEAR(right[0], -1, 1e-15) << "0.25 of the normal reaction, still against the pull";
+  EXPECT_EQ(node.collisions.constraints().front().free(0, 0), 1) << "let go";
+}
+
+TEST(Collisions, ASlidingNodeIsRubbedWithCoulombsImpulse) {
   OneNode node(0.25);
   node.v = {1, 0, 0};
   node.resolve();
-  const std::vector<double> reaction{0, 2 * 2.0, 0};  // a change of 2 m/s
-  node.collisions.apply_friction(node.v, reaction);
-  EXPECT_NEAR(node.v[0], 1 - 0.25 * 2, 1e-15);
-  const std::vector<double> pull{0, -4.0, 0};
-  node.collisions.apply_friction(node.v, pull);
-  EXPECT_NEAR(node.v[0], 0.5, 1e-15) << "adhesion rubs nothing";
+  std::vector<double> right(3, 0.0);
+  EXPECT_TRUE(node.collisions.slide(node.v, std::vector<double>{0, 4, 0}, right));
+  EXPECT_NEAR(right[0], -1, 1e-15);
+  right.assign(3, 0.0);
+  EXPECT_FALSE(node.collisions.slide(node.v, std::vector<double>{0, -4, 0}, right)) << "adhesion rubs nothing";
+}
+
+TEST(Collisions, FrictionNeverTurnsANodeRound) {
+  OneNode node(0.25);
+  node.v = {1, 0, 0};
+  node.resolve();
+  std::vector<double> right(3, 0.0);
+  node.collisions.slide(node.v, std::vector<double>{0, 4, 0}, right);
+  node.v = {-0.5, 0, 0.25};
+  node.collisions.stop_reversed(node.v);
+  EXPECT_EQ(node.v, (std::vector<double>{0, 0, 0}));
+  EXPECT_NEAR(node.collisions.friction()[0], -1, 1e-15);
+  EXPECT_NEAR(node.collisions.impulse()[0], 2 * 0.5, 1e-15);
 }
 
 TEST(Collisions, FixedNodesPassThrough) {
