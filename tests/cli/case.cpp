@@ -11,7 +11,7 @@ gravity: [0, -9.81, 0]
 output: {directory: out, frames_per_second: 1000}
 bodies:
   cube:
-    mesh: {generate: box, size: [1, 1, 1], cells: [2, 2, 2]}
+    mesh: {generate: box, size: [1, 1, 1], cells: [2, 2, 2], cell: tet6}
     density: 1000
     material: {model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.3}
     damping: {model: rotated, stiffness_proportional: 0.01}
@@ -126,7 +126,7 @@ std::string edited(std::string text, const std::vector<Edit>& edits) {
 File scene(const std::vector<Edit>& edits) { return {"scene.yaml", edited(good_scene, edits)}; }
 
 File scene_with_mesh(const std::string& mesh_file) {
-  return scene({{"generate: box, size: [1, 1, 1], cells: [2, 2, 2]", "file: " + mesh_file}});
+  return scene({{"generate: box, size: [1, 1, 1], cells: [2, 2, 2], cell: tet6", "file: " + mesh_file}});
 }
 
 File gmsh2(const std::vector<Edit>& edits) { return {"cube.msh", edited(good_gmsh2, edits)}; }

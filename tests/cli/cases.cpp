@@ -49,7 +49,8 @@ const std::vector<Case> good_runs{
     {.name = "check", .command = "check scene.yaml", .files = {scene()}, .exit_code = 0, .says = {"48"}},
     {.name = "quiet", .command = "run scene.yaml -quiet", .files = {scene()}, .exit_code = 0},
     {.name = "version", .command = "--version", .exit_code = 0, .says = {"evert "}},
-    {.name = "help", .command = "-help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
+    {.name = "help", .command = "run -help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
+    {.name = "no_command", .command = "", .exit_code = 0, .says = {"evert run scene.yaml"}},
     {.name = "explain",
      .command = "explain bodies.material.poissons_ratio",
      .exit_code = 0,
@@ -58,7 +59,6 @@ const std::vector<Case> good_runs{
 };
 
 const std::vector<Case> bad_commands{
-    bad_command("no_command", "", {"run, check"}),
     bad_command("unknown_command", "rum scene.yaml", {"'rum'", "did you mean 'run'?"}),
     bad_command("no_scene", "run", {"scene"}),
     bad_command("two_scenes", "run scene.yaml scene.yaml", {"scene.yaml"}),
@@ -74,11 +74,11 @@ const std::vector<Case> bad_commands{
     bad_command("set_without_value", "run scene.yaml -set end_time", {"path=value"}),
     bad_command("set_without_argument", "run scene.yaml -set", {"-set"}),
     bad_command("set_unknown_key", "run scene.yaml -set integrator.time_stepp=1e-4",
-                {"-set integrator.time_stepp=1e-4", "did you mean 'time_step'?"}),
+                {"-set integrator.time_stepp", "did you mean 'time_step'?"}),
     bad_command("set_unknown_body", "run scene.yaml -set bodies.cubes.density=1", {"bodies.cubes", "'cube'"}),
     bad_command("set_out_of_range", "run scene.yaml -set bodies.cube.density=-1",
                 {"bodies.cube.density", "> 0"}),
-    bad_command("explain_unknown_key", "explain bodies.materiel", {"materiel", "did you mean"}),
+    bad_command("explain_unknown_key", "explain bodies.materiel", {"'bodies.materiel' is no key"}),
 };
 
 const std::vector<Case> bad_scenes{
@@ -87,7 +87,7 @@ const std::vector<Case> bad_scenes{
      .files = {{"scene.yaml", std::string("\x00\x01\x02", 3)}},
      .says = {"zero bytes"}},
     {.name = "scene_is_a_list", .files = {{"scene.yaml", "[1, 2]\n"}}, .says = {"map of keys"}},
-    {.name = "scene_cut_short", .files = {cut(scene(), 6)}, .says = {"scene.yaml:"}},
+    {.name = "scene_cut_short", .files = {cut(scene(), 5)}, .says = {"scene.yaml:"}},
     bad_scene("not_yaml", {"density: 1000", "density: {1000"}, {"scene.yaml:", "YAML"}),
     bad_scene("misspelt_key", {"density: 1000", "densty: 1000"},
               {"scene.yaml:8", "densty", "did you mean 'density'?"}),
@@ -135,7 +135,7 @@ const std::vector<Case> bad_scenes{
     bad_scene("unknown_petsc_option", {"damping_ksp_rtol", "damping_ksp_rtl"},
               {"damping_ksp_rtl", "damping_ksp_rtol"}),
     {.name = "more_ranks_than_cells",
-     .files = {scene({{"cells: [2, 2, 2]", "cells: [1, 1, 1], cell: hex8"}})},
+     .files = {scene({{"cells: [2, 2, 2], cell: tet6", "cells: [1, 1, 1], cell: hex8"}})},
      .says = {"rank"},
      .ranks = {3}},
 };
@@ -203,7 +203,7 @@ const std::vector<Case> bad_output{
 const std::vector<Case> bad_restarts{
     bad_restart("restart_from_nothing",
                 [](const fs::path& place) { fs::remove(place / "out/checkpoint.h5"); },
-                {"checkpoint.h5", "no such file"}),
+                {"there is no checkpoint", "checkpoint.h5"}),
     bad_restart("restart_from_a_directory",
                 [](const fs::path& place) {
                   fs::remove(place / "out/checkpoint.h5");
