@@ -32,6 +32,14 @@ void write_run(const Mesh& whole, const std::string& path, const FrameFields& fi
   }
 }
 
+/// The name of each cell's region; their numbers are the reader's own.
+std::vector<std::string> regions_by_name(const Mesh& mesh) {
+  std::vector<std::string> names;
+  for (const auto& block : mesh.cells)
+    for (const auto region : block.region) names.push_back(mesh.regions[static_cast<std::size_t>(region)]);
+  return names;
+}
+
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
@@ -64,8 +72,7 @@ TEST(Export, VtuHoldsTheDeformedMeshAndItsFields) {
   export_vtu(run, 1, scratch / "frame.vtu");
   const auto mesh = read_mesh(scratch / "frame.vtu");
   EXPECT_EQ(mesh.nodes, run.positions(1));
-  EXPECT_EQ(mesh.cell_count(), whole.cell_count());
-  EXPECT_EQ(mesh.regions, whole.regions);
+  EXPECT_EQ(regions_by_name(mesh), regions_by_name(whole));
   const auto text = test::content_of(scratch / "frame.vtu");
   for (const auto* array :
        {"\"min_stretch\"", "\"inverted\"", "\"rank\"", "\"velocity\" NumberOfComponents=\"3\""})

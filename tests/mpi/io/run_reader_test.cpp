@@ -30,7 +30,9 @@ std::string error_after(Change&& change) {
     static_cast<void>(run.mesh());
     static_cast<void>(run.positions(0));
   });
-  return message.empty() ? message : message.substr(message.find("': ") + 3);
+  const std::string before = "' is not a usable run file: ";
+  const auto reason = message.find(before);
+  return reason == std::string::npos ? message : message.substr(reason + before.size());
 }
 
 TEST(RunReader, ReadsAWholeFile) {
