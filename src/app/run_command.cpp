@@ -131,7 +131,7 @@ RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Ob
   summary.max_inverted_time = observers.statistics->max_inverted_time;
   summary.quadrature_points = quadrature_points_of(simulation.mesh());
   summary.final_state = simulation.measure();
-  summary.cpu_level = kernels::name_of(kernels::cpu_level());
+  summary.cpu_level = kernels::chosen_cpu_level().name;
   for (const auto& body : built.bodies)
     summary.shape_errors.emplace_back(
         body.name, rms_shape_error(simulation.mesh(), simulation.positions(), body.first_node, body.end_node));

@@ -129,8 +129,8 @@ INSTANTIATE_TEST_SUITE_P(All, EveryOperator,
                          testing::Values(Choice{"shell", "pbjacobi"}, Choice{"shell", "jacobi"}, Choice{"shell", "none"},
                                          Choice{"baij", "pbjacobi"}, Choice{"baij", "bjacobi"}, Choice{"aij", "gamg"},
                                          Choice{"sbaij", "jacobi"}, Choice{"sbaij", "bjacobi"}, Choice{"aij", "bjacobi"}),
-                         [](const auto& info) {
-                           return std::string(info.param.mat_type) + "_" + info.param.pc_type;
+                         [](const auto& choice) {
+                           return std::string(choice.param.mat_type) + "_" + choice.param.pc_type;
                          });
 
 TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
