@@ -13,8 +13,7 @@
 /// A SIMD pack and, under the same names, the same operations on float, double and long double: a kernel is
 /// one template on its scalar `T` and runs on any of them.
 ///
-///   template <class T> T clamped(T x, T limit) { return select(x < limit, limit, x); }   // T = double or
-///   Pack
+///   template <class T> T clamped(T x, T limit) { return select(x < limit, limit, x); }
 ///
 /// The width follows the -march of the translation unit: `Pack` holds 2 doubles on x86-64-v2, 4 on v3, 8 on
 /// v4. It is a different type on each, so templates over it never meet at link time (see always_inline.hpp).
@@ -123,7 +122,6 @@ template <class T>
 concept RealPack = Real<T> && !std::floating_point<T>;
 
 // --- lanes
-// ------------------------------------------------------------------------------------------------------
 
 /// The same number in every lane.
 template <Real T>
@@ -170,7 +168,6 @@ EVERT_ALWAYS_INLINE T generate(Function&& number_of_lane) {
 }
 
 // --- masks
-// ------------------------------------------------------------------------------------------------------
 
 EVERT_ALWAYS_INLINE bool any(bool mask) { return mask; }
 EVERT_ALWAYS_INLINE bool all(bool mask) { return mask; }
@@ -196,7 +193,6 @@ EVERT_ALWAYS_INLINE T select(const mask_t<T>& mask, const T& a, const T& b) {
 }
 
 // --- arithmetic
-// -------------------------------------------------------------------------------------------------
 
 template <Real T>
 EVERT_ALWAYS_INLINE T sqrt(const T& x) {
@@ -215,6 +211,8 @@ EVERT_ALWAYS_INLINE T abs(const T& x) {
     return T(stdx::abs(x.simd()));
   }
 }
+
+// Not stdx::min and max: libstdc++ compiles them for finite numbers only, and they lose NaN.
 
 /// The smaller; `a` where either is NaN, so put the guard last: min(x, limit) keeps a NaN in x.
 template <Real T>
@@ -249,7 +247,6 @@ EVERT_ALWAYS_INLINE T multiply_sign(const T& x, const std::type_identity_t<T>& s
 }
 
 // --- powers of two and logarithm
-// ----------------------------------------------------------------------------------
 
 /// The largest power of two ≤ x, for positive normal x; NaN and ∞ give ∞.
 template <Real T>
@@ -265,13 +262,11 @@ EVERT_ALWAYS_INLINE T floor_power_of_two(const T& x) {
   }
 }
 
-// --------------------------------------------------------------------------------------------------
-
 namespace detail {
 
-/// Layout of a floating-point number, and the coefficients of fdlibm for log(1+f) = 2s + s·R(s²), s =
-/// f/(2+f): minimax on √½ ≤ 1+f ≤ √2, odd and even powers apart. ln 2 is split so that exponent · ln2_high is
-/// exact.
+/// Layout of a floating-point number, and the coefficients of fdlibm for log(1+f) = 2s + s·R(s²), with
+/// s = f/(2+f): minimax on √½ ≤ 1+f ≤ √2, odd and even powers apart. ln 2 is split so that
+/// exponent · ln2_high is exact.
 template <class Scalar>
 struct LogConstants;
 

@@ -14,8 +14,8 @@ struct Svd3 {
   Mat3<T> v;
 };
 
-/// All stages run: everything U, σ and V can be had from. `right` and `left` are the frames [w u v] and [l e
-/// f].
+/// The result of all stages, from which U, σ, V and every isotropic function of F follow. `right` and `left`
+/// are the frames [w u v] and [l e f].
 template <class T>
 struct Deflation {
   Frame<T> right;

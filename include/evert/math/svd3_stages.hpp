@@ -7,13 +7,12 @@
 /// The stages of the 3×3 SVD by deflation, branch-free, each a function of its own so that a kernel can run
 /// one stage at a time over packs that stay in L1. svd3.hpp puts them together.
 ///
-/// 1. B = FᵀF / mean eigenvalue − I, and its characteristic cubic              normalized_square
-/// 2. the eigenvalue of B farthest from the other two (σ1² or σ3²)             isolated_root
-/// 3. its eigenvector w, completed to a frame [w u v]                          isolated_direction,
-/// frame_along
-/// 4. F [w u v], and the left vector l ∥ F w or l ∥ F u × F v                  images, left_direction,
-/// frame_along
-/// 5. the plane remainder [e f]ᵀ F [u v] in polar form                         plane_remainder
+///   normalized_square    B = FᵀF / mean eigenvalue − I, and its characteristic cubic
+///   isolated_root        the eigenvalue of B farthest from the other two: that of σ1 or that of σ3
+///   isolated_direction   its eigenvector w, completed by frame_along to a frame [w u v]
+///   images               F [w u v]
+///   left_direction       l along F w or F u × F v, completed by frame_along to a frame [l e f]
+///   plane_remainder      [e f]ᵀ F [u v] in polar form
 ///
 /// An eigenproblem of FᵀF loses half the digits of small singular values. Here only one direction comes from
 /// it, the best separated one, which is accurate; the others come from F itself, which restores all digits
@@ -30,12 +29,15 @@ template <class Scalar>
 inline constexpr Scalar tiny_length = Scalar(0x1p-485);
 template <>
 inline constexpr float tiny_length<float> = 0x1p-51F;
+
 template <class Scalar>
-inline constexpr Scalar tiny_square = tiny_length<Scalar>* tiny_length<Scalar>;
+inline constexpr Scalar tiny_square = Scalar(0x1p-970);
+template <>
+inline constexpr float tiny_square<float> = 0x1p-102F;
 
 }  // namespace detail
 
-/// Stage 1: B = FᵀF · inverse_mean_square − I (trace 0; 0 for a scaled rotation).
+/// B = FᵀF · inverse_mean_square − I (trace 0; 0 for a scaled rotation).
 template <class T>
 struct NormalizedSquare {
   T b00, b11, b22, b01, b02, b12;
@@ -44,7 +46,7 @@ struct NormalizedSquare {
   T half_determinant;     ///< det B / 2
 };
 
-/// Stage 2: the best separated eigenvalue of B is `root` / `inverse_spread`.
+/// The best separated eigenvalue of B is `root` / `inverse_spread`.
 template <class T>
 struct IsolatedRoot {
   T root;            ///< in [√3, 2] when it belongs to σ1, in [−2, −√3] when it belongs to σ3
@@ -63,7 +65,7 @@ struct PlaneVector {
   T x, y, length;
 };
 
-/// Stage 5: lᵀ F w and M = [e f]ᵀ F [u v] = rotation + reflection, where a rotation part is
+/// lᵀ F w and M = [e f]ᵀ F [u v] = rotation + reflection, where a rotation part is
 /// [[x, −y], [y, x]] and a reflection part is [[x, y], [y, −x]]. The singular values of M, the second with
 /// the sign of det M, are rotation.length ± reflection.length: no decision about signs is ever taken.
 template <class T>
@@ -129,7 +131,7 @@ EVERT_ALWAYS_INLINE IsolatedRoot<T> isolated_root(const NormalizedSquare<T>& b) 
   return {copysign(root, cosine), inverse_spread};
 }
 
-/// Stage 3: the right singular vector w of the isolated value, not normalised: of the columns of
+/// The right singular vector w of the isolated value, not normalised: of the columns of
 /// adj(B − λI) = (λ_2 − λ)(λ_3 − λ) w wᵀ the one with the largest diagonal.
 template <Real T>
 EVERT_ALWAYS_INLINE Vec3<T> isolated_direction(const NormalizedSquare<T>& b,
@@ -167,13 +169,13 @@ EVERT_ALWAYS_INLINE Frame<T> frame_along(const Vec3<T>& direction) {
           {sign * xy_h, sign * (one + minus_h * n[1] * n[1]), -n[1]}};
 }
 
-/// Stage 4: [F w, F u, F v] as columns.
+/// [F w, F u, F v] as columns.
 template <Real T>
 EVERT_ALWAYS_INLINE Mat3<T> images(const Mat3<T>& f, const Frame<T>& right) {
   return {f * right.normal, f * right.first, f * right.second};
 }
 
-/// Stage 4: the left singular vector l of the isolated value, not normalised. F w serves when w belongs to
+/// The left singular vector l of the isolated value, not normalised. F w serves when w belongs to
 /// σ1, the normal of the plane (F u, F v) when it belongs to σ3, where F w may vanish. F = 0 takes l = w.
 template <Real T>
 EVERT_ALWAYS_INLINE Vec3<T> left_direction(const Mat3<T>& images, const Frame<T>& right,
@@ -190,7 +192,7 @@ EVERT_ALWAYS_INLINE Vec3<T> left_direction(const Mat3<T>& images, const Frame<T>
   return l;
 }
 
-/// Stage 5. `left` is the frame [l e f]. What is neglected, [e f]ᵀ F w and lᵀ F [u v], is rounding of σ1.
+/// `left` is the frame [l e f]. What is neglected, [e f]ᵀ F w and lᵀ F [u v], is rounding of σ1.
 template <Real T>
 EVERT_ALWAYS_INLINE PlaneRemainder<T> plane_remainder(const Mat3<T>& images, const Frame<T>& left) {
   const auto& [fw, fu, fv] = images.column;

@@ -14,6 +14,9 @@ namespace {
 
 constexpr long double bound = 1e-14L;  // PHYSICS 2 asks for 1e-13
 
+Svd3<double> svd3_of(const Mat3d& f) { return svd3(f); }
+Deflation<double> deflation_of(const Mat3d& f) { return deflate(f); }
+
 TEST(Svd3, IsAccurateOnTenMillionMatrices) {
   const LevelKernels& widest = *runnable_levels().back();
   constexpr std::size_t chunk = 1 << 13;
@@ -45,7 +48,7 @@ TEST(Svd3, EveryCpuLevelIsAccurateAndAgreesWithTheScalar) {
       std::vector<double> u(9 * count), sigma(3 * count), v(9 * count);
       level->svd3(matrices.data(), {u.data(), sigma.data(), v.data()}, count);
       for (std::size_t i = 0; i < count; ++i) {
-        const Svd3<double> scalar = svd3(matrices.get(i));
+        const Svd3<double> scalar = svd3_of(matrices.get(i));
         for (std::size_t k = 0; k < 3; ++k) {
           // The sign of a σ3 that is rounding is free.
           const double packed = std::abs(sigma[k * count + i]), expected = std::abs(scalar.sigma[k]);
@@ -66,7 +69,7 @@ TEST(Svd3, PackAndScalarGiveTheSameSingularVectorsWhereTheyAreUnique) {
     level->svd3(matrices.data(), {u.data(), sigma.data(), v.data()}, count);
     std::size_t compared = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const Svd3<double> scalar = svd3(matrices.get(i));
+      const Svd3<double> scalar = svd3_of(matrices.get(i));
       const double s1 = scalar.sigma[0], s2 = scalar.sigma[1], s3 = std::abs(scalar.sigma[2]);
       const double gap = std::min(s1 - s2, s2 - s3) / s1;
       if (gap < 0.1 || s3 < 0.1 * s1) continue;
@@ -107,7 +110,7 @@ TEST(Svd3, RunsInFloatAndLongDouble) {
 }
 
 void expect_stretches(const Mat3d& f, const Vec3d& expected) {
-  const Svd3<double> svd = svd3(f);
+  const Svd3<double> svd = svd3_of(f);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(svd.sigma[k], expected[k], 2e-15 * expected[0]);
 }
 
@@ -122,17 +125,17 @@ TEST(Svd3, KnownStretches) {
 }
 
 TEST(Svd3, SignsOfTinyStretchesOnAxesAreExact) {
-  EXPECT_LT(svd3(diagonal<double>({1, 1e-20, -1e-20})).sigma[2], 0);
-  EXPECT_GT(svd3(diagonal<double>({-1, 1e-20, -1e-20})).sigma[2], 0);
-  EXPECT_LT(svd3(diagonal<double>({1, 1, -1e-300})).sigma[2], 0);
-  EXPECT_GT(svd3(diagonal<double>({1, 1, 1e-300})).sigma[2], 0);
+  EXPECT_LT(svd3_of(diagonal<double>({1, 1e-20, -1e-20})).sigma[2], 0);
+  EXPECT_GT(svd3_of(diagonal<double>({-1, 1e-20, -1e-20})).sigma[2], 0);
+  EXPECT_LT(svd3_of(diagonal<double>({1, 1, -1e-300})).sigma[2], 0);
+  EXPECT_GT(svd3_of(diagonal<double>({1, 1, 1e-300})).sigma[2], 0);
 }
 
 TEST(Svd3, ZeroGivesRotations) {
-  const Svd3<double> svd = svd3(Mat3d{});
+  const Svd3<double> svd = svd3_of(Mat3d{});
   EXPECT_NEAR(determinant(svd.u), 1, 1e-15);
   EXPECT_NEAR(determinant(svd.v), 1, 1e-15);
-  EXPECT_NEAR(determinant(polar_rotation(deflate(Mat3d{}))), 1, 1e-15);
+  EXPECT_NEAR(determinant(polar_rotation(deflation_of(Mat3d{}))), 1, 1e-15);
 }
 
 TEST(Svd3, PowersOfTwoScaleExactly) {
@@ -140,7 +143,7 @@ TEST(Svd3, PowersOfTwoScaleExactly) {
   for (int k = 0; k < 1000; ++k) {
     const Mat3d f = families()[0].sample(random);
     for (const double scale : {0x1p-900, 0x1p-500, 0x1p500, 0x1p900}) {
-      const Svd3<double> small = svd3(f), large = svd3(scale * f);
+      const Svd3<double> small = svd3_of(f), large = svd3_of(scale * f);
       EXPECT_EQ(large.sigma, scale * small.sigma);
       EXPECT_EQ(large.u, small.u);
       EXPECT_EQ(large.v, small.v);
@@ -154,7 +157,7 @@ TEST(Svd3, SubnormalMatricesAreAccurateToTheirLastBit) {
   Random random(13);
   for (int k = 0; k < 1000; ++k) {
     const Mat3d f = 1e-310 * families()[0].sample(random);
-    const Svd3<double> svd = svd3(f), of_normal = svd3(0x1p100 * f);
+    const Svd3<double> svd = svd3_of(f), of_normal = svd3_of(0x1p100 * f);
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_LE(std::abs(svd.sigma[i] - 0x1p-100 * of_normal.sigma[i]), last_bit);
   }
@@ -167,8 +170,8 @@ TEST(Svd3, NonFiniteInputGivesNaNEverywhere) {
       for (const Mat3d& around : {Mat3d{}, identity<double>(), 1e300 * identity<double>()}) {
         Mat3d f = around;
         f(c % 3, c / 3) = bad;
-        const Svd3<double> svd = svd3(f);
-        const Deflation<double> d = deflate(f);
+        const Svd3<double> svd = svd3_of(f);
+        const Deflation<double> d = deflation_of(f);
         const Mat3d tensor = isotropic_tensor(d, Vec3d{1, 2, 3}), rotation = polar_rotation(d);
         for (std::size_t k = 0; k < 9; ++k) {
           EXPECT_TRUE(std::isnan(svd.u(k % 3, k / 3)) && std::isnan(svd.v(k % 3, k / 3)));
@@ -193,14 +196,14 @@ TEST(IsotropicTensor, OfUnitValuesIsThePolarRotation) {
   Random random(14);
   for (int k = 0; k < 5000; ++k) {
     const Mat3d f = families()[std::size_t(k) % families().size()].sample(random);
-    const Deflation<double> d = deflate(f);
+    const Deflation<double> d = deflation_of(f);
     EXPECT_LE(norm(isotropic_tensor(d, Vec3d{1, 1, 1}) - polar_rotation(d)), 1e-15);
   }
 }
 
 TEST(IsotropicTensor, ScalesWithItsValues) {
   const Mat3d f{{{{1, 0.2, 0}, {-0.4, 0.8, 0.1}, {0.3, 0, -0.6}}}};
-  const Deflation<double> d = deflate(f);
+  const Deflation<double> d = deflation_of(f);
   const Vec3d s = principal_stretches(d);
   // σ³ → F Fᵀ F
   const Mat3d cubed = isotropic_tensor(d, Vec3d{s[0] * s[0] * s[0], s[1] * s[1] * s[1], s[2] * s[2] * s[2]});
@@ -208,11 +211,11 @@ TEST(IsotropicTensor, ScalesWithItsValues) {
 }
 
 TEST(PrincipalStretches, TellWhichIsWhich) {
-  const Deflation<double> prolate = deflate(diagonal<double>({1, -5, 1.5}));
+  const Deflation<double> prolate = deflation_of(diagonal<double>({1, -5, 1.5}));
   EXPECT_GT(prolate.root, 0);
   EXPECT_NEAR(principal_stretches(prolate)[0], 5, 1e-14);
   EXPECT_NEAR(principal_stretches(prolate)[2], -1, 1e-14);
-  const Deflation<double> oblate = deflate(diagonal<double>({4, -0.5, 5}));
+  const Deflation<double> oblate = deflation_of(diagonal<double>({4, -0.5, 5}));
   EXPECT_LT(oblate.root, 0);
   EXPECT_NEAR(principal_stretches(oblate)[0], -0.5, 1e-14);
   EXPECT_NEAR(principal_stretches(oblate)[1], 5, 1e-14);

@@ -23,7 +23,9 @@ Mat3d gaussian(std::mt19937_64& random) {
 
 Mat3d of_frame(const Frame<double>& frame) { return {frame.normal, frame.first, frame.second}; }
 
-Mat3d rotation(std::mt19937_64& random) { return polar_rotation(deflate(gaussian(random))); }
+Deflation<double> deflation_of(const Mat3d& f) { return deflate(f); }
+
+Mat3d rotation(std::mt19937_64& random) { return polar_rotation(deflation_of(gaussian(random))); }
 
 TEST(ScaleToUnit, IsExact) {
   std::mt19937_64 random(1);
@@ -179,7 +181,7 @@ TEST(PlaneRemainder, HoldsTheRestOfTheMatrix) {
   std::mt19937_64 random(6);
   for (int k = 0; k < 1000; ++k) {
     const Mat3d f = gaussian(random);
-    const Deflation<double> d = deflate(f);
+    const Deflation<double> d = deflation_of(f);
     const Mat3d middle = transpose_times(of_frame(d.left), f * of_frame(d.right));  // block diagonal
     const double size = norm(f);
     for (const std::size_t i : {1U, 2U}) {
@@ -194,6 +196,25 @@ TEST(PlaneRemainder, HoldsTheRestOfTheMatrix) {
     EXPECT_NEAR(d.scale * (p.reflection.y + p.rotation.y), middle(2, 1), 2e-15 * size);
     EXPECT_DOUBLE_EQ(p.rotation.length, std::hypot(p.rotation.x, p.rotation.y));
     EXPECT_DOUBLE_EQ(p.reflection.length, std::hypot(p.reflection.x, p.reflection.y));
+  }
+}
+
+TEST(Stages, NeedNoScalingBetween1em70And1e70) {
+  std::mt19937_64 random(7);
+  for (int k = 0; k < 2000; ++k) {
+    Mat3d f = gaussian(random);
+    if (k % 2 == 0) f.column[2] = f.column[0] - f.column[1];
+    for (const double size : {1e-70, 1e-30, 1e30, 1e70}) {
+      const Mat3d sized = size * f;
+      const auto square = normalized_square(sized);
+      const auto isolated = isolated_root(square);
+      const auto right = frame_along(isolated_direction(square, isolated));
+      const auto f_right = images(sized, right);
+      const auto left = frame_along(left_direction(f_right, right, square, isolated));
+      const auto plane = plane_remainder(f_right, left);
+      const Mat3d rebuilt = isotropic_tensor(left, plane, right, principal_stretches(plane));
+      EXPECT_LE(norm(rebuilt - sized), 4e-15 * norm(sized));
+    }
   }
 }
 
