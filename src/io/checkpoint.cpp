@@ -6,6 +6,7 @@
 #include "evert/io/hdf5_file.hpp"
 
 #include "digest.hpp"
+#include "tables.hpp"
 #include <bit>
 #include <cstdio>
 #include <filesystem>
@@ -16,15 +17,9 @@ namespace {
 
 const std::string format = "evert checkpoint";
 constexpr std::int64_t format_version = 1;
-constexpr std::int64_t metadata_allowance =
-    64 << 10;  // bytes besides the tables, the fingerprint and the scalars
 
 // Attributes hold signed integers.
 std::int64_t as_attribute(std::uint64_t digest) { return std::bit_cast<std::int64_t>(digest); }
-
-RowRange slice_of(const NaturalOrder& order) {
-  return {order.first(), static_cast<GlobalIndex>(order.slice_size())};
-}
 
 /// What can be said of a file without HDF5.
 void require_hdf5(const std::string& path) {
@@ -129,7 +124,7 @@ void CheckpointWriter::write_file(const std::string& path, std::span<const doubl
   file.set_attribute("/", "scalar_values", values);
   const auto write_table = [&](const std::string& table, std::span<const double> owned) {
     const auto slice = order_.to_slices<double>(owned, 3);
-    file.write<double>(table, {order_.total(), 3}, slice_of(order_), slice);
+    file.write<double>(table, {order_.total(), 3}, rows_of(order_), slice);
     file.set_attribute(table, "digest", as_attribute(digest(mesh_.comm, 3 * order_.first(), slice)));
   };
   write_table("/positions", positions);
@@ -145,7 +140,7 @@ CheckpointState read_checkpoint(const DistributedMesh& mesh, const std::string& 
   const auto order = natural_node_order(mesh);
   const auto file = Hdf5File::open(mesh.comm, path, Hdf5File::Access::read);
   const auto read_table = [&](const std::string& table) {
-    const auto slice = file.read<double>(table, slice_of(order));
+    const auto slice = file.read<double>(table, rows_of(order));
     if (as_attribute(digest(mesh.comm, 3 * order.first(), slice)) !=
         file.attribute<std::int64_t>(table, "digest"))
       throw UserError("checkpoint '" + path + "' is damaged: the values of '" + table + "' have changed");

@@ -6,6 +6,7 @@
 #include "evert/io/run_reader.hpp"
 
 #include "run_layout.hpp"
+#include "tables.hpp"
 #include "xdmf.hpp"
 #include <algorithm>
 #include <array>
@@ -13,8 +14,6 @@
 
 namespace evert {
 namespace {
-
-constexpr std::int64_t metadata_allowance = 64 << 10;  // bytes that a frame may need besides its tables
 
 std::vector<std::pair<CellType, GlobalIndex>> count_blocks(const DistributedMesh& mesh) {
   std::array<GlobalIndex, all_cell_types.size()> counts{};
@@ -67,10 +66,6 @@ void require_run_of(const DistributedMesh& mesh, const std::string& path) {
                   std::to_string(mesh.total_nodes) + " and " + std::to_string(mesh.total_cells));
 }
 
-RowRange slice_of(const NaturalOrder& order) {
-  return {order.first(), static_cast<GlobalIndex>(order.slice_size())};
-}
-
 }  // namespace
 
 FrameWriter::FrameWriter(const DistributedMesh& mesh, Hdf5File file, const FrameFields& fields)
@@ -90,8 +85,8 @@ FrameWriter::FrameWriter(const DistributedMesh& mesh, const std::string& path, c
 
 FrameWriter FrameWriter::continue_from(const DistributedMesh& mesh, const std::string& path,
                                        const FrameFields& fields, double time) {
-  const PhaseScope phase(Phase::io);
   if (!exists(mesh.comm, path)) return {mesh, path, fields};
+  const PhaseScope phase(Phase::io);
   on_root(mesh.comm, [&] { require_run_of(mesh, path); });
   FrameWriter writer(mesh, Hdf5File::open(mesh.comm, path, Hdf5File::Access::write), fields);
   for (const auto& name : writer.file_.names_in("/frames")) {
@@ -135,7 +130,7 @@ void FrameWriter::write_mesh() {
   std::vector<double> rest;
   for (LocalIndex i = 0; i < mesh_.owned_nodes; ++i)
     for (std::size_t c = 0; c < 3; ++c) rest.push_back(mesh_.rest_positions[static_cast<std::size_t>(i)][c]);
-  file_.write<double>(run_layout::rest_positions, {nodes_.total(), 3}, slice_of(nodes_),
+  file_.write<double>(run_layout::rest_positions, {nodes_.total(), 3}, rows_of(nodes_),
                       nodes_.to_slices<double>(rest, 3));
   write_connectivity();
   std::vector<std::int32_t> regions;
@@ -162,7 +157,7 @@ void FrameWriter::write_connectivity() {
     }
     const NaturalOrder order(mesh_.comm, count, numbers);
     const auto slice = order.to_slices<std::int64_t>(rows, width);
-    file_.write<std::int64_t>(run_layout::cells(type), {count, node_count(type)}, slice_of(order), slice);
+    file_.write<std::int64_t>(run_layout::cells(type), {count, node_count(type)}, rows_of(order), slice);
     if (mixed) {
       std::vector<std::int64_t> coded;
       for (std::size_t first = 0; first < slice.size(); first += width) {
@@ -185,19 +180,19 @@ void FrameWriter::write_ranks(bool anew) {
   const std::vector<std::int32_t> mine(cells_.item_count(), rank_of(mesh_.comm));
   const auto slice = cells_.to_slices<std::int32_t>(mine);
   if (anew || !file_.contains(run_layout::rank))
-    file_.write<std::int32_t>(run_layout::rank, {cells_.total(), 1}, slice_of(cells_), slice);
+    file_.write<std::int32_t>(run_layout::rank, {cells_.total(), 1}, rows_of(cells_), slice);
   else
-    file_.overwrite<std::int32_t>(run_layout::rank, {cells_.total(), 1}, slice_of(cells_), slice);
+    file_.overwrite<std::int32_t>(run_layout::rank, {cells_.total(), 1}, rows_of(cells_), slice);
 }
 
 void FrameWriter::write_nodes(const std::string& table, const NodeField& field) {
-  file_.write<double>(table, {nodes_.total(), 3}, slice_of(nodes_),
+  file_.write<double>(table, {nodes_.total(), 3}, rows_of(nodes_),
                       nodes_.to_slices<double>(field.owned(), 3));
 }
 
 template <class T>
 void FrameWriter::write_cells(const std::string& table, const std::vector<T>& values) {
-  file_.write<T>(table, {cells_.total(), 1}, slice_of(cells_), cells_.template to_slices<T>(values));
+  file_.write<T>(table, {cells_.total(), 1}, rows_of(cells_), cells_.template to_slices<T>(values));
 }
 
 void FrameWriter::write_stretches(const std::string& group, const FrameSource& source) {

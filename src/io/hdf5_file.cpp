@@ -42,22 +42,6 @@ Result checked(Result result) {
   return result;
 }
 
-/// HDF5 prints no error stacks while this lives.
-class Silence {
- public:
-  Silence() {
-    static_cast<void>(H5Eget_auto2(H5E_DEFAULT, &function_, &data_));
-    static_cast<void>(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
-  }
-  ~Silence() { static_cast<void>(H5Eset_auto2(H5E_DEFAULT, function_, data_)); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
 // clang-format off
 hid_t native(double /*tag*/) { return H5T_NATIVE_DOUBLE; }
 hid_t native(std::int64_t /*tag*/) { return H5T_NATIVE_INT64; }
@@ -79,6 +63,14 @@ PropertyList shared_access(MPI_Comm comm) {
   cache.flash_incr_mode = H5C_flash_incr__off;
   cache.decr_mode = H5C_decr__off;
   checked(H5Pset_mdc_config(access.get(), &cache));
+  return access;
+}
+
+/// Without locks, which some parallel file systems lack; a file is consistent whenever it is not being
+/// flushed.
+PropertyList lone_access() {
+  PropertyList access(checked(H5Pcreate(H5P_FILE_ACCESS)));
+  checked(H5Pset_file_locking(access.get(), false, true));
   return access;
 }
 
@@ -208,7 +200,6 @@ void get(hid_t object, const std::string& name, T& value) {
 }  // namespace
 
 void Hdf5File::together(const std::string& verb, const std::function<void()>& work) const {
-  const Silence silence;
   std::string reason;
   try {
     work();
@@ -220,6 +211,10 @@ void Hdf5File::together(const std::string& verb, const std::function<void()>& wo
   } catch (const UserError& agreed) {
     throw Hdf5Error("cannot " + verb + " '" + path_ + "'", agreed.what());
   }
+}
+
+Hdf5File::Hdf5File(MPI_Comm comm, std::string path) : comm_(comm), path_(std::move(path)) {
+  static_cast<void>(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));
 }
 
 Hdf5File Hdf5File::create(MPI_Comm comm, const std::string& path) {
@@ -236,7 +231,8 @@ Hdf5File Hdf5File::open(MPI_Comm comm, const std::string& path, Access access) {
   Hdf5File file(comm, path);
   // Each rank reads by itself: no rank can wait for another that met an error.
   file.together("read", [&] {
-    file.file_ = Hdf5Handle<H5Fclose>(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)));
+    const auto alone = lone_access();
+    file.file_ = Hdf5Handle<H5Fclose>(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, alone.get())));
   });
   if (access == Access::read) return file;
   file.file_ = {};

@@ -105,7 +105,7 @@ class Hdf5File {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  Hdf5File(MPI_Comm comm, std::string path) : comm_(comm), path_(std::move(path)) {}
+  Hdf5File(MPI_Comm comm, std::string path);
   void together(const std::string& verb, const std::function<void()>& work) const;
 
   MPI_Comm comm_;
