@@ -43,13 +43,13 @@ ImplicitShape cylinder(double radius, double length) {
       {radius, length / 2, radius}};
 }
 
-ImplicitShape ellipsoid(const Vec3d& semi_axes) {
-  for (const double semi_axis : semi_axes.components) require_positive(semi_axis, "semi_axes");
+ImplicitShape ellipsoid(const Vec3d& radii) {
+  for (const double radius : radii.components) require_positive(radius, "radii");
   return {"ellipsoid",
           [=](const Vec3d& p) {
-            return norm({p[0] / semi_axes[0], p[1] / semi_axes[1], p[2] / semi_axes[2]}) - 1;
+            return norm({p[0] / radii[0], p[1] / radii[1], p[2] / radii[2]}) - 1;
           },
-          -semi_axes, semi_axes};
+          -radii, radii};
 }
 
 ImplicitShape capsule(double radius, double length) {

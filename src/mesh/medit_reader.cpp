@@ -127,7 +127,7 @@ class MeditReader {
       for (auto& coordinate : position.components) coordinate = in_.real("a coordinate of a vertex");
       const auto node = mesh_.add_node(position);
       const auto reference = in_.integer("the reference of a vertex");
-      if (reference != 0) mesh_.add_to_node_set("point_" + std::to_string(reference), {&node, 1});
+      if (reference != 0) mesh_.add_to_node_set("vertices_" + std::to_string(reference), {&node, 1});
     }
   }
 

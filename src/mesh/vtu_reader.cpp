@@ -108,6 +108,8 @@ class VtuReader {
     if (begin == std::string_view::npos || end == std::string_view::npos || end < begin)
       in_.fail_at(tag.position,
                   "the appended data must begin with '_' and end with </AppendedData> (truncated?)");
+    if (rest.find("</VTKFile>", end) == std::string_view::npos)
+      in_.fail_at(in_.position() + rest.size(), "the file ends where </VTKFile> is expected (truncated?)");
     encoding_.appended = rest.substr(begin + 1, end - begin - 1);
   }
 

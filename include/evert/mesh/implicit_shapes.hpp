@@ -23,7 +23,7 @@ struct ImplicitShape {
 [[nodiscard]] ImplicitShape torus(double major_radius, double minor_radius);
 /// Around the y axis.
 [[nodiscard]] ImplicitShape cylinder(double radius, double length);
-[[nodiscard]] ImplicitShape ellipsoid(const Vec3d& semi_axes);
+[[nodiscard]] ImplicitShape ellipsoid(const Vec3d& radii);
 /// A cylinder around the y axis with a half ball at both ends; `length` is that of the cylinder alone.
 [[nodiscard]] ImplicitShape capsule(double radius, double length);
 

@@ -4,16 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <unistd.h>
 #include <vector>
 
 /// What the tests of mesh files share.
@@ -24,8 +24,8 @@ class MeshFileTest : public ::testing::Test {
  protected:
   MeshFileTest() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("evert_mesh_") + info->test_suite_name() + "_" + info->name() + "_" + std::to_string(getpid()));
+    folder_ = std::filesystem::temp_directory_path() / (std::string("evert_mesh_") + info->test_suite_name() +
+                                                        "_" + info->name() + "_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
   }
   ~MeshFileTest() override { std::filesystem::remove_all(folder_); }
@@ -41,8 +41,9 @@ class MeshFileTest : public ::testing::Test {
 };
 
 inline std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  return content.str();
 }
 
 /// Expects a UserError of one line whose text holds every fragment.
@@ -55,7 +56,8 @@ void expect_user_error(Work&& work, std::initializer_list<std::string_view> frag
     const std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     for (const auto fragment : fragments)
-      EXPECT_NE(message.find(fragment), std::string::npos) << "'" << message << "' does not mention '" << fragment << "'";
+      EXPECT_NE(message.find(fragment), std::string::npos)
+          << "'" << message << "' does not mention '" << fragment << "'";
   }
 }
 
@@ -88,11 +90,12 @@ class Bytes {
   std::string bytes_;
 };
 
-/// Two tetrahedra, a hexahedron, a wedge and a quadratic tetrahedron in two regions, with two node sets; node 0 is
-/// not used. Coordinates need all digits.
+/// Two tetrahedra, a hexahedron, a wedge and a quadratic tetrahedron in two regions, with two node sets; node
+/// 0 is not used. Coordinates need all digits.
 inline Mesh mixed_mesh() {
   Mesh mesh;
-  mesh.nodes = {{1.0 / 3, -1e-17, 1e300 * 1e-290}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.2, -0.7}};
+  mesh.nodes = {
+      {1.0 / 3, -1e-17, 1e300 * 1e-290}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.2, -0.7}};
   const auto add = [&](const Vec3d& origin, std::initializer_list<Vec3d> corners) {
     std::vector<GlobalIndex> numbers;
     for (const auto& corner : corners) {
@@ -101,10 +104,19 @@ inline Mesh mixed_mesh() {
     }
     return numbers;
   };
-  const auto hex = add({2, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}});
+  const auto hex = add(
+      {2, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}});
   const auto wedge = add({4, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
-  const auto tet10 = add({6, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {0.5, 0.5, 0}, {0, 0.5, 0},
-                                     {0, 0, 0.5}, {0.5, 0, 0.5}, {0, 0.5, 0.5}});
+  const auto tet10 = add({6, 0, 0}, {{0, 0, 0},
+                                     {1, 0, 0},
+                                     {0, 1, 0},
+                                     {0, 0, 1},
+                                     {0.5, 0, 0},
+                                     {0.5, 0.5, 0},
+                                     {0, 0.5, 0},
+                                     {0, 0, 0.5},
+                                     {0.5, 0, 0.5},
+                                     {0, 0.5, 0.5}});
   mesh.regions = {"hard core", "soft shell"};
   mesh.cells = {{CellType::tet4, {1, 2, 3, 4, 1, 3, 2, 5}, {1, 0}},
                 {CellType::hex8, hex, {0}},

@@ -1,4 +1,5 @@
 #include "evert/mesh/mesh_reader.hpp"
+
 #include "mesh_files.hpp"
 
 namespace evert::test {
@@ -141,7 +142,8 @@ std::string binary41(std::endian order) {
 
 TEST_F(GmshReader, reads_binary_in_both_byte_orders) {
   for (const auto order : {std::endian::little, std::endian::big}) {
-    for (const auto& [content, set] : {std::pair{binary22(order), "surface_3"}, std::pair{binary41(order), "side"}}) {
+    for (const auto& [content, set] :
+         {std::pair{binary22(order), "surface_3"}, std::pair{binary41(order), "side"}}) {
       const auto mesh = read_mesh(file("a.msh", content));
       EXPECT_EQ(mesh.nodes[3], (Vec3d{0, 0, 1}));
       EXPECT_EQ(mesh.block(CellType::tet4)->nodes, (Nodes{0, 1, 2, 3}));
@@ -157,7 +159,8 @@ TEST_F(GmshReader, refuses_binary_cut_at_every_byte) {
   for (const auto& content : {binary22(std::endian::little), binary41(std::endian::little)})
     for (std::size_t size = 1; size + 1 < content.size(); ++size) {
       const auto cut = file("cut.msh", content.substr(0, size));
-      if (content.substr(size) != "\n") expect_user_error([&] { static_cast<void>(read_mesh(cut)); }, {"cut.msh"});
+      if (content.substr(size) != "\n")
+        expect_user_error([&] { static_cast<void>(read_mesh(cut)); }, {"cut.msh"});
     }
 }
 
@@ -185,15 +188,18 @@ TEST_F(GmshReader, names_the_line_of_what_is_wrong) {
       {with(two_regions22, "30 1 0 0", "30 1e999 0 0"), "a.msh:16:", "finite number"},
       {with(two_regions22, "30 1 0 0", "30 one 0 0"), "a.msh:16:", "must be a number, not 'one'"},
       {with(two_regions22, "30 1 0 0", "10 1 0 0"), "a.msh:16:", "node tag 10 is given a second time"},
-      {with(two_regions22, "10 30 20 99\n4", "10 30 21 99\n4"), "a.msh:25:", "no node 21; the nodes go from 7 to 99"},
+      {with(two_regions22, "10 30 20 99\n4", "10 30 21 99\n4"),
+       "a.msh:25:", "no node 21; the nodes go from 7 to 99"},
       {with(two_regions22, "3 4 2 2 1", "3 7 2 2 1"), "a.msh:25:", "pyramid5"},
       {with(two_regions22, "3 4 2 2 1", "3 92 2 2 1"), "a.msh:25:", "element type 92 is not known"},
       {with(two_regions22, "$Nodes\n5", "$Nodes\n6"), "a.msh:20:", "must be a whole number, not '$EndNodes'"},
       {with(two_regions22, "$Nodes\n5", "$Nodes\n4"), "a.msh:19:", "$EndNodes is expected here"},
       {with(two_regions22, "$Nodes\n5", "$Nodes\n-5"), "a.msh:14:", "must not be negative"},
       {with(two_regions22, "$Nodes\n5", "$Nodes\n900000000000"), "a.msh:14:", "more than the remaining"},
-      {with(two_regions22, "$Elements\n5", "$Elements\n8000000000000000000"), "a.msh:22:", "more than the remaining"},
-      {with(two_regions22, "4 4 4 1", "4 4 9000000 1"), "a.msh:26:", "number of tags of an element is 9000000"},
+      {with(two_regions22, "$Elements\n5", "$Elements\n8000000000000000000"),
+       "a.msh:22:", "more than the remaining"},
+      {with(two_regions22, "4 4 4 1", "4 4 9000000 1"),
+       "a.msh:26:", "number of tags of an element is 9000000"},
       {with(two_regions22, "3 1 \"steel\"", "4 1 \"steel\""), "a.msh:6:", "must be 0, 1, 2 or 3"},
       {with(two_regions22, "\"steel\"", "steel"), "a.msh:6:", "double quotes"},
       {with(two_regions22, "$EndComments", "$EndComment"), "a.msh:10:", "has no $EndComments"},
@@ -232,7 +238,8 @@ TEST_F(GmshReader, needs_nodes_elements_and_volume_cells) {
   expect(format, "no section $Nodes");
   expect(format + nodes, "no section $Elements");
   expect(format + triangles + nodes, "$Elements comes before $Nodes");
-  expect(format + nodes + triangles, "no volume cells (tet4, hex8, wedge6 or tet10), only 3 nodes, 1 triangle3");
+  expect(format + nodes + triangles,
+         "no volume cells (tet4, hex8, wedge6 or tet10), only 3 nodes, 1 triangle3");
   expect(format + nodes + "$Elements\n0\n$EndElements\n", "no volume cells");
 }
 

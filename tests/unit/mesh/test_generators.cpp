@@ -1,0 +1,224 @@
+#include "evert/mesh/boundary.hpp"
+#include "evert/mesh/generators.hpp"
+#include "evert/mesh/quality.hpp"
+#include "evert/mesh/repair.hpp"
+
+#include "mesh_files.hpp"
+#include <cmath>
+#include <numbers>
+
+namespace evert::test {
+namespace {
+
+const NodeSet& node_set(const Mesh& mesh, std::string_view name) {
+  const auto found = std::ranges::find(mesh.node_sets, name, &NodeSet::name);
+  if (found == mesh.node_sets.end()) throw std::runtime_error("no node set " + std::string(name));
+  return *found;
+}
+
+const Vec3d& position(const Mesh& mesh, GlobalIndex node) {
+  return mesh.nodes[static_cast<std::size_t>(node)];
+}
+
+TEST(Box, fills_its_volume_with_every_kind_of_cell) {
+  const Vec3d size{1, 2, 3};
+  const std::array divisions{3, 4, 5};
+  constexpr GlobalIndex cubes = 60;
+  const std::vector<std::tuple<BoxCells, CellType, GlobalIndex>> kinds{
+      {BoxCells::hex8, CellType::hex8, cubes},
+      {BoxCells::wedge6, CellType::wedge6, 2 * cubes},
+      {BoxCells::tet5, CellType::tet4, 5 * cubes},
+      {BoxCells::tet6, CellType::tet4, 6 * cubes},
+      {BoxCells::bcc, CellType::tet4, 12 * cubes}};
+  for (const auto& [cells, type, count] : kinds) {
+    const auto mesh = generate_box(size, divisions, cells);
+    ASSERT_EQ(mesh.cells.size(), 1U);
+    EXPECT_EQ(mesh.cells[0].type, type);
+    EXPECT_EQ(mesh.cell_count(), count);
+    EXPECT_NO_THROW(require_positive_volumes(mesh, "box"));
+    const auto quality = measure_quality(mesh);
+    EXPECT_NEAR(quality.total_volume, 6, 1e-13);
+    EXPECT_EQ(quality.components, 1);
+    EXPECT_EQ(quality.unused_nodes, 0);
+    EXPECT_EQ(quality.duplicate_nodes, 0);
+    // A closed boundary of the six sides: cells fit together.
+    GlobalIndex squares = 0;
+    for (const auto& face : boundary_faces(mesh)) squares += face.corners == 4 ? 2 : 1;
+    EXPECT_EQ(squares, 2 * 2 * (3 * 4 + 4 * 5 + 5 * 3)) << static_cast<int>(cells);
+  }
+}
+
+TEST(Box, names_its_sides) {
+  const auto mesh = generate_box({1, 2, 3}, {3, 4, 5}, BoxCells::bcc);
+  EXPECT_EQ(node_set(mesh, "x_min").nodes.size(), 5U * 6U);
+  EXPECT_EQ(node_set(mesh, "y_max").nodes.size(), 4U * 6U);
+  EXPECT_EQ(node_set(mesh, "z_min").nodes.size(), 4U * 5U);
+  for (const auto node : node_set(mesh, "x_min").nodes) EXPECT_EQ(position(mesh, node)[0], -0.5);
+  for (const auto node : node_set(mesh, "y_max").nodes) EXPECT_EQ(position(mesh, node)[1], 1.0);
+  for (const auto node : node_set(mesh, "z_max").nodes) EXPECT_EQ(position(mesh, node)[2], 1.5);
+  EXPECT_EQ(node_set(mesh, "surface").nodes, boundary_nodes(mesh));
+}
+
+TEST(Box, takes_the_edge_length_that_divides_it) {
+  EXPECT_EQ(generate_box({1, 0.5, 0.3}, 0.11, BoxCells::hex8).cell_count(), 9 * 5 * 3);
+}
+
+TEST(Box, of_the_bcc_lattice_has_the_best_angles) {
+  const auto angles = measure_quality(generate_box({1, 1, 1}, 0.25, BoxCells::bcc)).dihedral_angle;
+  EXPECT_NEAR(angles.smallest, 45, 1e-9);
+  EXPECT_NEAR(angles.largest, 120, 1e-9);
+}
+
+ImplicitShape box_with_hole() {
+  return {"box with a hole",
+          [](const Vec3d& p) {
+            const double box = std::max({std::abs(p[0]) - 1, std::abs(p[1]) - 0.8, std::abs(p[2]) - 0.6});
+            return std::max(box, 0.35 - std::hypot(p[0], p[1]));
+          },
+          {-1, -0.8, -0.6},
+          {1, 0.8, 0.6}};
+}
+
+struct Stuffed {
+  ImplicitShape shape;
+  double volume;  // [m³]
+  int handles;    // of the surface
+};
+
+std::vector<Stuffed> shapes() {
+  constexpr double pi = std::numbers::pi;
+  return {
+      {ball(1), 4 * pi / 3, 0},
+      {torus(0.5, 0.2), 2 * pi * pi * 0.5 * 0.04, 1},
+      {torus(1, 0.1), 2 * pi * pi * 0.01, 1},
+      {torus(0.5, 0.45), 2 * pi * pi * 0.5 * 0.45 * 0.45, 1},
+      {cylinder(0.4, 2), pi * 0.16 * 2, 0},
+      {ellipsoid({1, 0.5, 1.3}), 4 * pi / 3 * 0.65, 0},
+      {capsule(0.3, 1), pi * 0.09 + 4 * pi / 3 * 0.027, 0},
+      {box_with_hole(), 2 * 1.6 * 1.2 - pi * 0.35 * 0.35 * 1.2, 1},
+  };
+}
+
+/// The bound that issue 2 asks for is 8 degrees; the method promises 9 whatever the shape.
+TEST(Stuffing, keeps_every_dihedral_angle_above_9_degrees) {
+  for (const auto& [shape, volume, handles] : shapes()) {
+    const auto size = shape.upper - shape.lower;
+    const double thinnest = std::min({size[0], size[1], size[2]});
+    for (const double parts : {2.0, 2.7, 4.0, 6.3, 9.1}) {
+      const auto mesh = generate(shape, thinnest / parts);
+      const auto quality = measure_quality(mesh);
+      EXPECT_GT(quality.dihedral_angle.smallest, 9) << shape.name << ' ' << parts;
+      EXPECT_LT(quality.dihedral_angle.largest, 165) << shape.name << ' ' << parts;
+      EXPECT_NO_THROW(require_positive_volumes(mesh, shape.name));
+      EXPECT_EQ(quality.unused_nodes + quality.duplicate_nodes, 0) << shape.name << ' ' << parts;
+    }
+  }
+}
+
+/// Surfaces that are nowhere aligned with the lattice, and one that is rough at its scale.
+TEST(Stuffing, keeps_the_bound_for_tilted_and_rough_shapes) {
+  double smallest = 180;
+  for (int seed = 0; seed < 12; ++seed) {
+    const double a = 0.37 * seed;
+    const ImplicitShape tilted{"tilted slab",
+                               [=](const Vec3d& p) {
+                                 const double across = std::cos(a) * p[0] +
+                                                       std::sin(a) * std::cos(2 * a) * p[1] +
+                                                       std::sin(a) * std::sin(2 * a) * p[2];
+                                 return std::max(std::abs(across) - 0.31, std::hypot(p[0], p[1], p[2]) - 1);
+                               },
+                               {-1, -1, -1},
+                               {1, 1, 1}};
+    const ImplicitShape rough{"rough ball",
+                              [=](const Vec3d& p) {
+                                return std::hypot(p[0], p[1], p[2]) - 0.8 +
+                                       0.15 * std::sin(17 * p[0] + a) * std::sin(19 * p[1] + 2 * a) *
+                                           std::sin(23 * p[2] + 3 * a);
+                              },
+                              {-1, -1, -1},
+                              {1, 1, 1}};
+    for (const auto& shape : {tilted, rough})
+      smallest = std::min(smallest, measure_quality(generate(shape, 0.14)).dihedral_angle.smallest);
+  }
+  EXPECT_GT(smallest, 9);
+}
+
+TEST(Stuffing, converges_to_the_shape_and_its_topology) {
+  for (const auto& [shape, volume, handles] : shapes()) {
+    const auto size = shape.upper - shape.lower;
+    const double thinnest = std::min({size[0], size[1], size[2]});
+    const auto mesh = generate(shape, thinnest / 8);
+    const auto quality = measure_quality(mesh);
+    EXPECT_NEAR(quality.total_volume / volume, 1, 0.04) << shape.name;
+    EXPECT_EQ(quality.components, 1) << shape.name;
+    // Euler's formula of the closed surface.
+    const auto faces = quality.boundary_faces;
+    const auto surface = static_cast<GlobalIndex>(node_set(mesh, "surface").nodes.size());
+    EXPECT_EQ(surface - 3 * faces / 2 + faces, 2 - 2 * handles) << shape.name;
+    for (const auto node : node_set(mesh, "surface").nodes)
+      EXPECT_NEAR(shape.value(position(mesh, node)), 0, 1e-12) << shape.name;
+  }
+}
+
+TEST(Stuffing, gives_the_tori_of_the_demo) {
+  EXPECT_EQ(generate(torus(0.5, 0.2), 0.077).cell_count(), 11048);
+  const auto large = generate(torus(0.5, 0.2), 0.035).cell_count();
+  EXPECT_GT(large, 114000);
+  EXPECT_LT(large, 116000);
+}
+
+TEST(Stuffing, is_repeatable) {
+  const auto a = generate(torus(0.5, 0.2), 0.1);
+  const auto b = generate(torus(0.5, 0.2), 0.1);
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.cells[0].nodes, b.cells[0].nodes);
+}
+
+TEST(Generators, refuse_impossible_sizes) {
+  const double nan = std::nan("");
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto expect = [](auto work, std::string_view fault) {
+    expect_user_error([&] { static_cast<void>(work()); }, {fault});
+  };
+  expect([&] { return ball(0); }, "radius is 0, but must be a positive finite length");
+  expect([&] { return ball(nan); }, "radius is nan");
+  expect([&] { return cylinder(1, -2); }, "length is -2");
+  expect([&] { return ellipsoid({1, infinite, 1}); }, "radii is inf");
+  expect([&] { return torus(0.2, 0.5); }, "minor_radius is 0.5, but must be less than major_radius, 0.2");
+  expect([&] { return generate(ball(1), 0); }, "edge_length is 0");
+  expect([&] { return generate(ball(1), nan); }, "edge_length is nan");
+  expect([&] { return generate(ball(1), 1.5); },
+         "edge_length is 1.5, but must be at most 1, half the shortest extent");
+  expect([&] { return generate(ball(1), 1e-4); },
+         "GB of this machine are allowed: choose a larger edge_length");
+  expect([&] { return generate(ball(1), 1e-300); }, "choose a larger edge_length");
+  expect(
+      [&] {
+        return generate_box({1, 1, 1}, 2, BoxCells::hex8);
+      },
+      "must not be more than the shortest side, 1");
+  expect([&] { return generate_box({1, 0, 1}, 0.5, BoxCells::hex8); }, "size is 0");
+  expect([&] { return generate_box({1, 1, 1}, 1e-6, BoxCells::hex8); }, "choose a larger edge_length");
+  expect([&] { return generate_box({1, 1, 1}, {2, 0, 2}, BoxCells::hex8); }, "must be at least 1");
+  expect([&] { return generate_box({1, 1, 1}, {100000, 100000, 100000}, BoxCells::hex8); }, "2^31 cells");
+  const Vec3d low{-1, -1, -1};
+  const Vec3d high{1, 1, 1};
+  expect(
+      [&] {
+        return generate({"hole", [=](const Vec3d&) { return nan; }, low, high}, 0.5);
+      },
+      "gives no number at");
+  expect(
+      [&] {
+        return generate({"void", [](const Vec3d&) { return 1.0; }, low, high}, 0.5);
+      },
+      "nothing is inside");
+  expect(
+      [&] {
+        return generate({"all", [](const Vec3d&) { return -1.0; }, low, high}, 0.5);
+      },
+      "reaches out of the box");
+}
+
+}  // namespace
+}  // namespace evert::test
