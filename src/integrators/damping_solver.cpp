@@ -74,7 +74,7 @@ KspHandle configured_ksp(MPI_Comm comm, const std::string& matrix_type) {
   check(PCSetType(pc, matrix_type == "sbaij" ? PCJACOBI : PCPBJACOBI));
   constexpr double default_rtol = 1e-8;  // what momentum is balanced to
   check(KSPSetTolerances(ksp.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  check(KSPSetFromOptions(ksp.get()));
+  check_options([&] { return KSPSetFromOptions(ksp.get()); });
   require_entries_for(ksp.get(), matrix_type);
   return ksp;
 }
@@ -102,7 +102,7 @@ void DampingSolver::create_ksp() {
   // option that nobody reads is noticed before the run.
   operator_->set(1e-3, {});
   assembled_->assemble();
-  check(KSPSetUp(ksp_.get()));
+  check_options([&] { return KSPSetUp(ksp_.get()); });
 }
 
 void DampingSolver::print_options(MPI_Comm comm) {
@@ -152,6 +152,8 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
     for (std::size_t i = 0; i < right.values().size(); ++i) change.values()[i] = right.values()[i] / mass[i / 3];
   }
   check(VecAXPY(v.vec(), 1.0, correction_.get()));
+  impose(constraints, v.owned());  // the correction has rounding in constrained directions
+  v.touched();
   return iterations;
 }
 

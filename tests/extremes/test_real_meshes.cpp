@@ -1,0 +1,53 @@
+// Real meshes dropped on the ground: finite, and what the world gave is what they have.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/support/scenes.hpp"
+
+namespace evert {
+namespace {
+
+class RealMesh : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealMesh, DropsForASecondAndKeepsTheBalance) {
+  const char* folder = std::getenv("EVERT_SHARED_MESHES");
+  const auto path = std::filesystem::path(folder == nullptr ? "" : folder) / GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
+  auto scene = test::build(R"(
+name: drop
+end_time: 1
+gravity: [0, -9.81, 0]
+bodies:
+  body:
+    mesh: {file: mesh.msh}
+    transform: {fit: 1, translate: [0, 0.7, 0]}
+    density: 1000
+    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4}
+    damping: {model: rotated, stiffness_proportional: 0.01}
+obstacles:
+  ground: {shape: half_space, normal: [0, 1, 0], friction: 0.3}
+)",
+                           {"bodies.body.mesh.file=" + path.string()});
+  auto& simulation = *scene.simulation;
+  const auto start = simulation.measure();
+  while (simulation.time() < 1.0) {
+    const double left = 1.0 - simulation.time();
+    const double steps = std::ceil(left / simulation.suggested_time_step() - 1e-9);
+    steps <= 1 ? simulation.step_to(1.0) : simulation.step(left / steps);
+  }
+  for (const double value : simulation.positions().owned()) ASSERT_TRUE(std::isfinite(value));
+  for (const double value : simulation.velocities().owned()) ASSERT_TRUE(std::isfinite(value));
+  const auto now = simulation.measure();
+  EXPECT_GT(now.contact_impulse[1], 0) << "it must have hit the ground";
+  const auto received = now.gravity_impulse + now.contact_impulse + now.constraint_impulse;
+  EXPECT_LE(norm(now.momentum - start.momentum - received), 1e-8 * norm(now.gravity_impulse));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, RealMesh,
+                         testing::Values("Armadillo13K.msh", "bunny.mesh", "dolphin5K.msh", "liver.msh"));
+
+}  // namespace
+}  // namespace evert
