@@ -71,7 +71,7 @@ void AssembledDamping::preallocate(const char* type) {
   check(MatAssemblyEnd(pattern.get(), MAT_FINAL_ASSEMBLY));
   mat_ = empty_matrix(mesh, type, numbering.get());
   if (std::string_view(type) == MATSBAIJ) check(MatSetOption(mat_.get(), MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
-  check(MatPreallocatorPreallocate(pattern.get(), PETSC_TRUE, mat_.get()));
+  check(MatPreallocatorPreallocate(pattern.get(), PETSC_FALSE, mat_.get()));
   check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));
 }
 

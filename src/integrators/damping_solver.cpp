@@ -63,6 +63,14 @@ void require_entries_for(KSP ksp, const std::string& matrix_type) {
                     " needs the entries of the matrix: add -damping_mat_type baij, sbaij or aij");
 }
 
+/// GAMG keeps its first coarse spaces and eigenvalues unless told otherwise; ours change by orders of magnitude with the
+/// step and the material.
+void rebuild_multigrid(PC pc) {
+  PetscBool told = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, "damping_", "-pc_gamg_reuse_interpolation", &told));
+  if (told == PETSC_FALSE) check(PCGAMGSetReuseInterpolation(pc, PETSC_FALSE));
+}
+
 /// Conjugate gradients with our defaults, then the user's options.
 KspHandle configured_ksp(MPI_Comm comm, const std::string& matrix_type) {
   KspHandle ksp;
@@ -76,6 +84,7 @@ KspHandle configured_ksp(MPI_Comm comm, const std::string& matrix_type) {
   check(KSPSetTolerances(ksp.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   check_options([&] { return KSPSetFromOptions(ksp.get()); });
   require_entries_for(ksp.get(), matrix_type);
+  rebuild_multigrid(pc);
   return ksp;
 }
 
@@ -94,15 +103,20 @@ void DampingSolver::create_ksp() {
   operator_ = std::make_unique<DampingOperator>(mesh_, elastic_);
   const auto type = matrix_type_option(mesh_.comm);
   if (type != "shell") assembled_ = std::make_unique<AssembledDamping>(*operator_, type.c_str());
-  ksp_ = configured_ksp(mesh_.comm, type);
   const Mat mat = assembled_ != nullptr ? assembled_->mat() : operator_->mat();
-  check(KSPSetOperators(ksp_.get(), mat, mat));
-  if (assembled_ == nullptr) return;
-  // Preconditioners of several parts read the options of their parts when they are first set up: now, so that an
-  // option that nobody reads is noticed before the run.
-  operator_->set(1e-3, {});
-  assembled_->assemble();
-  check_options([&] { return KSPSetUp(ksp_.get()); });
+  const auto with_operator = [&] {
+    auto ksp = configured_ksp(mesh_.comm, type);
+    check(KSPSetOperators(ksp.get(), mat, mat));
+    return ksp;
+  };
+  if (assembled_ != nullptr) {
+    // Preconditioners of several parts read the options of their parts when they are first set up: once on trial, so
+    // that an option that nobody reads is noticed before the run.
+    operator_->set(0, {});
+    assembled_->assemble();
+    check(KSPSetUp(with_operator().get()));
+  }
+  ksp_ = with_operator();
 }
 
 void DampingSolver::print_options(MPI_Comm comm) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <random>
 
@@ -21,9 +22,9 @@ bodies:
     mesh: {generate: ball, radius: 0.5, edge_length: 0.35}
     density: 1000
     material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4}
-    damping: {model: rotated, stiffness_proportional: 0.002}
+    damping: {model: objective, stiffness_proportional: 3.0e-4}  # conserves angular momentum: no spin is left over
 events:  # first untangle with the momentum of the recoil, then come to rest
-  - {at: 1.5, set: bodies.body.damping.stiffness_proportional, to: 0.03}
+  - {at: 4, set: bodies.body.damping.stiffness_proportional, to: 0.02}
 )";
 
 const std::array<std::string, 3> meshes{
@@ -56,7 +57,7 @@ Outcome recover(const std::string& model, const std::string& mesh, const std::st
                                   "bodies.body.transform.rotate={axis: " + axis_of(seed) + ", angle: 40}"});
   auto& simulation = *scene.simulation;
   Outcome outcome;
-  while (simulation.time() < 8) {
+  while (simulation.time() < 9) {
     for (int step = 0; step < 50; ++step) {
       const double dt = simulation.suggested_time_step();
       simulation.next_event() < simulation.time() + dt ? simulation.step_to(simulation.next_event())
@@ -77,6 +78,11 @@ const std::string rotated_linear = "{model: rotated_linear, youngs_modulus: 1.0e
 const std::string st_venant_kirchhoff =
     "{model: st_venant_kirchhoff, youngs_modulus: 1.0e5, poissons_ratio: 0.4, compression_limit: 0.8}";
 
+/// All for the model that must recover from everything, fewer for the others unless EVERT_ALL_SEEDS is set.
+int seeds_for(const std::string& model) {
+  return model == "neo_hookean" || std::getenv("EVERT_ALL_SEEDS") != nullptr ? seeds : 4;
+}
+
 struct Case {
   const char* name;
   const std::string& model;
@@ -88,7 +94,7 @@ class Recovery : public testing::TestWithParam<Case> {};
 TEST_P(Recovery, EndsAtRestWithNothingInverted) {
   const auto [name, model, kind] = GetParam();
   for (const auto& mesh : meshes)
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = 1; seed <= seeds_for(name); ++seed) {
       const auto outcome = recover(model, mesh, kind, seed);
       EXPECT_EQ(outcome.inverted, 0) << mesh << ", seed " << seed;
       EXPECT_LT(outcome.shape_error, 1e-6) << mesh << ", seed " << seed;
