@@ -76,7 +76,7 @@ int guarded(const std::string& command, const Arguments& arguments) {
 
 /// PETSc sees its own options only; a command line that cannot be taken apart is left to the command to complain about.
 Arguments petsc_options(const std::string& command, const Arguments& arguments) {
-  if (command != "run") return {};
+  if (command != "run" && command != "check") return {};
   try {
     return evert::parse_run_arguments(arguments).petsc;
   } catch (const evert::UserError&) {

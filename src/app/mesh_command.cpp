@@ -54,9 +54,8 @@ void write_and_tell(const Mesh& mesh, const std::string& path, MeshFormat format
 
 int generate_command(std::span<const std::string> arguments, std::ostream& out) {
   const auto request = generate_mesh(arguments);
-  const auto format = mesh_format_of(request.output);
   write_quality_text(measure_quality(request.mesh), out);
-  write_and_tell(request.mesh, request.output, format, out);
+  write_and_tell(request.mesh, request.output, request.format, out);
   return 0;
 }
 
@@ -108,7 +107,8 @@ int partition_command(std::span<const std::string> arguments, std::ostream& out)
   const auto rank_of_cell = partition_cells(mesh, ranks);
   write_partition(measure_partition(mesh, rank_of_cell, ranks), out);
   if (!options.has("o")) return 0;
-  const std::vector<CellField> fields{{"rank", std::vector<std::int32_t>(rank_of_cell.begin(), rank_of_cell.end())}};
+  const std::vector<CellField> fields{
+      {"rank", std::vector<std::int32_t>(rank_of_cell.begin(), rank_of_cell.end())}};
   write_mesh(mesh, options.text("o"), fields);
   out << "wrote " << options.text("o") << '\n';
   return 0;

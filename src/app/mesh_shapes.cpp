@@ -78,8 +78,9 @@ GenerateRequest generate_mesh(std::span<const std::string> arguments) {
     auto with_value = shape.options;
     with_value.emplace_back("o");
     const MeshOptions options("generate " + shape.name, arguments.subspan(1), with_value, {}, {});
-    auto output = options.text("o");  // before the work
-    return {shape.make(options), std::move(output)};
+    auto output = options.text("o");
+    const auto format = mesh_format_of(output);  // before the work
+    return {shape.make(options), std::move(output), format};
   }
   throw UserError("evert mesh generate: there is no shape '" + arguments.front() + "': must be " +
                   list_of(names) + did_you_mean(arguments.front(), names));

@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/mesh/mesh.hpp"
+#include "evert/mesh/mesh_writer.hpp"
 
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@ namespace evert {
 struct GenerateRequest {
   Mesh mesh;
   std::string output;  ///< of -o
+  MeshFormat format;   ///< of its extension
 };
 
 /// `arguments`: a shape and its options. Throws UserError for bad usage or impossible sizes.

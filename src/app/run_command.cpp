@@ -1,6 +1,6 @@
 #include "evert/app/run_command.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <numeric>
@@ -57,22 +57,6 @@ FrameFields fields_of(const OutputConfig& output) {
   return fields;
 }
 
-/// What must be equal for a checkpoint to go on in a scene: all but how long it runs, what it writes and how it solves.
-std::string fingerprint_of(const SceneConfig& scene) {
-  const std::array<std::string_view, 4> left_out{"end_time:", "output:", "checkpoint:", "petsc:"};
-  std::string fingerprint;
-  bool kept = true;
-  for (std::size_t begin = 0; begin < scene.text.size();) {
-    const auto end = std::min(scene.text.find('\n', begin), scene.text.size() - 1) + 1;
-    const std::string_view line(&scene.text[begin], end - begin);
-    if (line.front() != ' ' && line.front() != '-')
-      kept = std::none_of(left_out.begin(), left_out.end(), [&](auto key) { return line.starts_with(key); });
-    if (kept) fingerprint += line;
-    begin = end;
-  }
-  return fingerprint;
-}
-
 /// How often inverted points are counted: with the frames, or a hundred times.
 double look_interval(const SceneConfig& scene) {
   return scene.output.frames_per_second ? 1 / *scene.output.frames_per_second : scene.end_time / 100;
@@ -98,7 +82,7 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
     observers.add(std::make_unique<EnergyObserver>(std::move(log), *scene.output.energy_log));
   }
   observers.checkpoints = observers.add(std::make_unique<CheckpointObserver>(
-      CheckpointWriter(mesh, files("checkpoint.h5"), fingerprint_of(scene)),
+      CheckpointWriter(mesh, files("checkpoint.h5"), scene.identity),
       scene.checkpoint.value_or(CheckpointConfig{})));
   observers.add(std::make_unique<ProgressObserver>(simulation, scene.end_time, arguments.quiet, *observers.statistics));
   return observers;
@@ -158,7 +142,7 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
   auto built = build_scene(comm, scene);
   reject_unused_options(comm, arguments.allow_unknown_options);
   auto& simulation = *built.simulation;
-  if (!arguments.restart.empty()) restore(simulation, arguments.restart, fingerprint_of(scene));
+  if (!arguments.restart.empty()) restore(simulation, arguments.restart, scene.identity);
   auto observers = make_observers(scene, simulation, files, arguments);
 
   const auto end = run_loop(simulation, scene.end_time, observers.all);

@@ -2,13 +2,34 @@
 
 #include <string>
 
+#include "evert/core/error.hpp"
+
 namespace evert {
+namespace {
+
+/// An error handler of PETSc's that keeps the first complaint, where its own would print all of them.
+PetscErrorCode keep_message(MPI_Comm /*comm*/, int /*line*/, const char* /*function*/, const char* /*file*/,
+                            PetscErrorCode code, PetscErrorType type, const char* text, void* context) {
+  auto& message = *static_cast<std::string*>(context);
+  if (type == PETSC_ERROR_INITIAL && text != nullptr && message.empty()) message = text;
+  return code;
+}
+
+}  // namespace
 
 void petsc_failed(PetscErrorCode code, const std::source_location& where) {
   const char* text = nullptr;
   static_cast<void>(PetscErrorMessage(code, &text, nullptr));
   throw PetscFailure("PETSc error " + std::to_string(code) + " (" + (text != nullptr ? text : "unknown") + ") in " +
                      where.function_name() + " at " + where.file_name() + ":" + std::to_string(where.line()));
+}
+
+void check_options(const std::function<PetscErrorCode()>& calls) {
+  std::string message;
+  check(PetscPushErrorHandler(keep_message, &message));
+  const auto code = calls();
+  check(PetscPopErrorHandler());
+  if (code != 0) throw UserError("PETSc refuses an option: " + message.substr(0, message.find('\n')));
 }
 
 }  // namespace evert

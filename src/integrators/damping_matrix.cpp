@@ -72,7 +72,7 @@ void AssembledDamping::preallocate(const char* type) {
   mat_ = empty_matrix(mesh, type, numbering.get());
   if (std::string_view(type) == MATSBAIJ) check(MatSetOption(mat_.get(), MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   check(MatPreallocatorPreallocate(pattern.get(), PETSC_FALSE, mat_.get()));
-  check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));
+  if (std::string_view(type) != MATBAIJ) check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));  // unknown to MPIBAIJ
 }
 
 void AssembledDamping::attach_rigid_body_modes() {

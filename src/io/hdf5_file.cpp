@@ -125,7 +125,8 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const Da
   if (checked(H5Aexists(object, name.c_str())) > 0) checked(H5Adelete(object, name.c_str()));
   const Attribute attribute(
       checked(H5Acreate2(object, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT)));
-  checked(H5Awrite(attribute.get(), type, data));
+  // HDF5 takes no null buffer, not even for nothing.
+  if (checked(H5Sget_simple_extent_npoints(space.get())) > 0) checked(H5Awrite(attribute.get(), type, data));
 }
 
 template <class T>

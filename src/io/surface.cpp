@@ -28,13 +28,6 @@ void sort_and_unite(std::vector<T>& values) {
   values.erase(std::ranges::unique(values).begin(), values.end());
 }
 
-std::vector<std::int32_t> regions_of_cells(const Mesh& mesh) {
-  std::vector<std::int32_t> regions;
-  for (const auto& block : mesh.cells)
-    regions.insert(regions.end(), block.region.begin(), block.region.end());
-  return regions;
-}
-
 double area_of(const Surface& surface, std::span<const Vec3d> positions) {
   const auto at = [&](std::uint32_t vertex) {
     return positions[static_cast<std::size_t>(surface.nodes[vertex])];
@@ -128,25 +121,35 @@ std::pair<Vec3d, Vec3d> bounds_of(std::span<const Vec3d> positions) {
 }
 
 Surface surface_of(const Mesh& mesh) {
-  const auto faces = boundary_faces(mesh);
-  const auto regions = regions_of_cells(mesh);
+  constexpr auto inside = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> vertex_of(mesh.nodes.size(), inside);
   Surface surface;
-  for (const auto& face : faces)
-    surface.nodes.insert(surface.nodes.end(), face.used().begin(), face.used().end());
-  sort_and_unite(surface.nodes);
-  surface.regions.resize(surface.nodes.size());
-  for (const auto& face : faces) {
+  for (const auto& face : boundary_faces(mesh)) {
     std::array<std::uint32_t, 6> vertices{};
     for (std::size_t i = 0; i < face.used().size(); ++i) {
-      const auto place = std::ranges::lower_bound(surface.nodes, face.nodes[i]);
-      vertices[i] = static_cast<std::uint32_t>(place - surface.nodes.begin());
-      surface.regions[vertices[i]] = regions[static_cast<std::size_t>(face.cell)];
-      surface.touches.push_back({vertices[i], face.cell});
+      auto& vertex = vertex_of[static_cast<std::size_t>(face.nodes[i])];
+      if (vertex == inside) {
+        vertex = static_cast<std::uint32_t>(surface.nodes.size());
+        surface.nodes.push_back(face.nodes[i]);
+      }
+      vertices[i] = vertex;
     }
     for (const auto& [a, b, c] : triangles_of(face))
       surface.triangles.push_back({vertices[a], vertices[b], vertices[c]});
   }
-  sort_and_unite(surface.touches);
+  surface.regions.resize(surface.nodes.size());
+  GlobalIndex first_cell = 0;
+  for (const auto& block : mesh.cells) {
+    for (std::size_t i = 0; i < block.nodes.size(); ++i) {
+      const auto vertex = vertex_of[static_cast<std::size_t>(block.nodes[i])];
+      if (vertex == inside) continue;
+      const auto cell = i / static_cast<std::size_t>(node_count(block.type));
+      surface.touches.push_back({vertex, first_cell + static_cast<GlobalIndex>(cell)});
+      surface.regions[vertex] = block.region[cell];
+    }
+    first_cell += block.size();
+  }
+  std::ranges::sort(surface.touches);
   return surface;
 }
 

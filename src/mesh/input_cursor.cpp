@@ -1,7 +1,6 @@
 #include "input_cursor.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>

@@ -163,7 +163,8 @@ class Stuffing {
     const bool mirrored = sort_from_inside(corners);
     if (outside == 0 || inside == 1) return fill_with_one(corners, mirrored);
     if (inside == 3) return fill_three_inside(corners, mirrored);
-    surface == 1 ? fill_two_inside_one_on_surface(corners, mirrored) : fill_two_inside(corners, mirrored);
+    if (surface == 1) return fill_two_inside_one_on_surface(corners, mirrored);
+    fill_two_inside(corners, mirrored);
   }
 
   /// Sorts the corners: inside, surface, outside. Returns whether that mirrored the tetrahedron.

@@ -17,8 +17,8 @@ GlobalIndex NodeTags::index_of(std::int64_t tag, const InputCursor& in) const {
   if (!entries_.empty()) {
     // Almost all files number their nodes without gaps.
     const auto first = entries_.front().tag;
-    const auto guess = static_cast<std::size_t>(tag - first);
-    if (tag >= first && guess < entries_.size() && entries_[guess].tag == tag) return entries_[guess].index;
+    const auto guess = static_cast<std::uint64_t>(tag) - static_cast<std::uint64_t>(first);
+    if (guess < entries_.size() && entries_[guess].tag == tag) return entries_[guess].index;
     const auto found = std::ranges::lower_bound(entries_, tag, {}, &Entry::tag);
     if (found != entries_.end() && found->tag == tag) return found->index;
   }

@@ -1,6 +1,7 @@
 #include "format_readers.hpp"
 #include "vtk_grid.hpp"
 #include "vtk_numbers.hpp"
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -204,6 +205,8 @@ class VtkReader {
       const auto tuples = in_.count("the number of tuples", 1);
       if (in_.peek_word() == "string") {
         in_.rest_of_line();
+        in_.plausible_count(tuples, "the number of strings",
+                            static_cast<std::size_t>(std::max<GlobalIndex>(components, 1)));
         read_strings(label, components * tuples);
       } else {
         const auto& type = read_type();
@@ -214,7 +217,6 @@ class VtkReader {
   }
 
   void read_strings(std::string_view name, GlobalIndex count) {
-    in_.plausible_count(count, "the number of strings", 1);
     for (GlobalIndex i = 0; i < count; ++i) {
       const auto text = decoded(binary_ ? read_binary_string() : in_.rest_of_line());
       if (name == region_names_array) grid_.region_names.push_back(text);

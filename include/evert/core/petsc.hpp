@@ -2,6 +2,7 @@
 #include <petscksp.h>
 #include <petscvec.h>
 
+#include <functional>
 #include <source_location>
 #include <stdexcept>
 #include <utility>
@@ -22,6 +23,11 @@ inline void check(PetscErrorCode code, const std::source_location& where = std::
   if (code != 0) [[unlikely]]
     petsc_failed(code, where);
 }
+
+/// Makes calls that read PETSc options, as collective as they are. A value that PETSc refuses (it cannot be asked
+/// beforehand) becomes a UserError with PETSc's own sentence, in place of its traceback on standard error; the objects
+/// involved are then only good for being destroyed.
+void check_options(const std::function<PetscErrorCode()>& calls);
 
 /// Owns one PETSc object; `Destroy` is its destructor, e.g. VecDestroy.
 template <class Object, PetscErrorCode (*Destroy)(Object*)>

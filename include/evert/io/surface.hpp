@@ -12,7 +12,7 @@ namespace evert {
 
 /// The outside of a mesh as triangles, for pictures.
 struct Surface {
-  /// A cell with a boundary face at a vertex.
+  /// A vertex and a cell that has it as a node.
   struct Touch {
     std::uint32_t vertex;
     GlobalIndex cell;

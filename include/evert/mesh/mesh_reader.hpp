@@ -13,7 +13,8 @@ namespace evert {
 /// - Gmsh: physical groups by their name, or "volume_<number>", "surface_<number>", "curve_<number>",
 ///   "point_<number>" without one; "default" for cells in no group. A volume in several physical groups has
 ///   the first for its region; the others become node sets.
-/// - Medit: references as "ref_<number>"; for references other than 0 "surface_<number>", "curve_<number>" and, of
+/// - Medit: references as "ref_<number>"; for references other than 0 "surface_<number>", "curve_<number>"
+/// and, of
 ///   vertices, "vertices_<number>".
 /// - VTK: the first integer cell array called region, gmsh:physical, medit:ref, CellEntityIds, MaterialIDs or
 ///   ElementBlockIds as "region_<number>", or by the names that write_mesh adds; "surface_<number>" and so
