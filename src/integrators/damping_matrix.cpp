@@ -31,7 +31,8 @@ MatHandle empty_matrix(const DistributedMesh& mesh, const char* type, ISLocalToG
 
 }  // namespace
 
-AssembledDamping::AssembledDamping(const DampingOperator& damping, const char* type) : damping_(damping) {
+AssembledDamping::AssembledDamping(const DampingOperator& damping, const char* type)
+    : damping_(damping), upper_only_(std::string_view(type) == MATSBAIJ) {
   for (int column = 0; column < 3; ++column) projectors_.emplace_back(damping.mesh());
   preallocate(type);
   attach_rigid_body_modes();
@@ -50,27 +51,46 @@ void AssembledDamping::for_each_cell(Work&& work) {
   }
 }
 
+/// Adds cell_, the dense matrix of the nodes rows_ (local numbers). A symmetric format gets the blocks on and above the
+/// diagonal only: PETSc's own way of dropping the others fails on several ranks.
+void AssembledDamping::add_cell(Mat mat) {
+  const auto n = rows_.size();
+  const auto count = static_cast<PetscInt>(n);
+  if (!upper_only_) {
+    check(MatSetValuesBlockedLocal(mat, count, rows_.data(), count, rows_.data(), cell_.data(), ADD_VALUES));
+    return;
+  }
+  std::array<double, 9> block{};
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b) {
+      if (global_number(rows_[b]) < global_number(rows_[a])) continue;
+      for (std::size_t k = 0; k < 9; ++k) block[k] = cell_[(3 * a + k / 3) * 3 * n + 3 * b + k % 3];
+      check(MatSetValuesBlockedLocal(mat, 1, &rows_[a], 1, &rows_[b], block.data(), ADD_VALUES));
+    }
+}
+
+GlobalIndex AssembledDamping::global_number(PetscInt local) const {
+  const auto& mesh = damping_.mesh();
+  return local < mesh.owned_nodes ? mesh.first_owned + local
+                                  : mesh.ghost_globals[static_cast<std::size_t>(local - mesh.owned_nodes)];
+}
+
 void AssembledDamping::preallocate(const char* type) {
   const auto& mesh = damping_.mesh();
   const auto numbering = node_numbering(mesh);
   const auto pattern = empty_matrix(mesh, MATPREALLOCATOR, numbering.get());
   check(MatSetUp(pattern.get()));
-  const auto insert = [&] {
-    const auto count = static_cast<PetscInt>(rows_.size());
-    check(MatSetValuesBlockedLocal(pattern.get(), count, rows_.data(), count, rows_.data(), cell_.data(), ADD_VALUES));
-  };
   for_each_cell([&](const ElasticBlock& /*block*/, LocalIndex /*cell*/, std::span<const LocalIndex> /*nodes*/) {
-    insert();
+    add_cell(pattern.get());
   });
   cell_.assign(9, 0.0);
   for (LocalIndex node = 0; node < mesh.owned_nodes; ++node) {  // undamped nodes have their mass
     rows_.assign(1, node);
-    insert();
+    add_cell(pattern.get());
   }
   check(MatAssemblyBegin(pattern.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(pattern.get(), MAT_FINAL_ASSEMBLY));
   mat_ = empty_matrix(mesh, type, numbering.get());
-  if (std::string_view(type) == MATSBAIJ) check(MatSetOption(mat_.get(), MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   check(MatPreallocatorPreallocate(pattern.get(), PETSC_FALSE, mat_.get()));
   if (std::string_view(type) != MATBAIJ) check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));  // unknown to MPIBAIJ
 }
@@ -125,22 +145,18 @@ void AssembledDamping::project_cell(std::span<const LocalIndex> nodes) {
 void AssembledDamping::assemble() {
   share_projectors();
   check(MatZeroEntries(mat_.get()));
-  const auto add = [&] {
-    const auto count = static_cast<PetscInt>(rows_.size());
-    check(MatSetValuesBlockedLocal(mat_.get(), count, rows_.data(), count, rows_.data(), cell_.data(), ADD_VALUES));
-  };
   for_each_cell([&](const ElasticBlock& block, LocalIndex cell, std::span<const LocalIndex> nodes) {
     block.damping_matrix(cell, cell_);
     for (auto& entry : cell_) entry *= damping_.factor();
     project_cell(nodes);
-    add();
+    add_cell(mat_.get());
   });
   const auto mass = damping_.elastic().masses();
   cell_.assign(unit_block.begin(), unit_block.end());
   for (std::size_t node = 0; node < mass.size(); ++node) {
     rows_.assign(1, static_cast<PetscInt>(node));
     for (std::size_t k = 0; k < 9; k += 4) cell_[k] = mass[node];
-    add();
+    add_cell(mat_.get());
   }
   check(MatAssemblyBegin(mat_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(mat_.get(), MAT_FINAL_ASSEMBLY));

@@ -18,12 +18,15 @@ class AssembledDamping {
  private:
   void preallocate(const char* type);
   void attach_rigid_body_modes();
+  void add_cell(Mat mat);
+  [[nodiscard]] GlobalIndex global_number(PetscInt local) const;
   void share_projectors();
   void project_cell(std::span<const LocalIndex> nodes);
   template <class Work>
   void for_each_cell(Work&& work);
 
   const DampingOperator& damping_;
+  bool upper_only_;                    // sbaij stores the upper triangle
   std::vector<NodeField> projectors_;  // the three columns of P per local node
   std::vector<PetscInt> rows_;         // scratch: one cell's nodes
   std::vector<double> cell_;           // scratch: one cell's matrix, row-major
