@@ -25,8 +25,8 @@ bodies:
     mesh: {file: mesh.msh}
     transform: {fit: 1, translate: [0, 0.7, 0]}
     density: 1000
-    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4}
-    damping: {model: rotated, stiffness_proportional: 0.01}
+    material: {model: neo_hookean, youngs_modulus: 1.0e3, poissons_ratio: 0.4}
+    damping: {model: rotated, stiffness_proportional: 1.0e-3}
 obstacles:
   ground: {shape: half_space, normal: [0, 1, 0], friction: 0.3}
 )",

@@ -30,7 +30,7 @@ events:  # first untangle with the momentum of the recoil, then come to rest
 const std::array<std::string, 3> meshes{
     "bodies.body.mesh={generate: ball, radius: 0.5, edge_length: 0.35}",
     "bodies.body.mesh={generate: box, min: [-0.5, -0.2, -0.2], max: [0.5, 0.2, 0.2], cells: [5, 2, 2], cell: tet6}",
-    "bodies.body.mesh={generate: torus, major_radius: 0.5, minor_radius: 0.2, edge_length: 0.28}"};
+    "bodies.body.mesh={generate: ellipsoid, radii: [0.5, 0.35, 0.3], edge_length: 0.28}"};
 
 /// A direction of its own for every seed.
 std::string axis_of(int seed) {

@@ -9,8 +9,9 @@
 namespace evert {
 namespace {
 
-/// A stiff block on a plane tilted by `angle` [rad]: gravity is tilted instead of the plane.
-BuiltScene block_on_slope(double angle, double friction) {
+/// A stiff block on a plane tilted by `angle` [rad]: gravity is tilted instead of the plane. `damping_time` [s] is
+/// stiffness-proportional.
+BuiltScene block_on_slope(double angle, double friction, double damping_time) {
   const double g = 9.81;
   const std::string yaml = R"(
 name: slope
@@ -22,7 +23,8 @@ bodies:
     mesh: {generate: box, min: [-0.1, 0, -0.1], max: [0.1, 0.05, 0.1], cells: [4, 1, 4], cell: tet6}
     density: 1000
     material: {model: neo_hookean, youngs_modulus: 1.0e6, poissons_ratio: 0.3}
-    damping: {model: rotated, stiffness_proportional: 5.0e-3}
+    damping: {model: rotated, stiffness_proportional: )" +
+                           std::to_string(damping_time) + R"(}
 obstacles:
   plane: {shape: half_space, normal: [0, 1, 0], friction: )" +
                            std::to_string(friction) + "}\n";
@@ -46,7 +48,7 @@ TEST(Friction, SlidesWithCoulombsAcceleration) {
   const double friction = 0.3;
   for (const double degrees : {20.0, 30.0, 45.0}) {
     const double angle = degrees * std::numbers::pi / 180;
-    auto scene = block_on_slope(angle, friction);
+    auto scene = block_on_slope(angle, friction, 5e-3);
     auto& simulation = *scene.simulation;
     const double begin = run_until(simulation, 0.3);
     const double before = mean_velocity_along_slope(simulation);
@@ -59,7 +61,7 @@ TEST(Friction, SlidesWithCoulombsAcceleration) {
 
 TEST(Friction, SticksBelowTheCoulombAngle) {
   const double friction = 0.3;
-  auto scene = block_on_slope(std::atan(friction) * 0.95, friction);
+  auto scene = block_on_slope(std::atan(friction) * 0.9, friction, 5e-4);
   auto& simulation = *scene.simulation;
   run_until(simulation, 1.0);  // the block settles on its springs
   const auto settled = test::gathered(simulation.mesh(), simulation.positions());
@@ -69,7 +71,7 @@ TEST(Friction, SticksBelowTheCoulombAngle) {
 }
 
 TEST(Friction, ImpulsesBalanceTheMomentum) {
-  auto scene = block_on_slope(0.5, 0.3);
+  auto scene = block_on_slope(0.5, 0.3, 5e-3);
   auto& simulation = *scene.simulation;
   const auto start = simulation.measure();
   run_until(simulation, 0.5);
