@@ -1,0 +1,29 @@
+# cmake -DNM=nm -DLEVEL=v3 -DREGISTER_BYTES=32 -DOBJECT=level.cpp.o -P kernel_symbols.cmake
+#
+# Every weak definition in the kernels of a CPU level must carry the pack type of that level in its name. Any other one
+# may be defined by another object too, and then the linker keeps one of them, perhaps the one an older CPU cannot run.
+execute_process(COMMAND ${NM} --defined-only --format=posix ${OBJECT} OUTPUT_VARIABLE symbols RESULT_VARIABLE status)
+if(NOT status EQUAL 0 OR symbols STREQUAL "")
+  message(FATAL_ERROR "nm cannot read ${OBJECT}")
+endif()
+string(REPLACE "\n" ";" symbols "${symbols}")
+set(own 0)
+set(foreign "")
+foreach(symbol IN LISTS symbols)
+  if(NOT symbol MATCHES "^([^ ]+) ([WwVvu]) ")
+    continue()
+  endif()
+  set(name "${CMAKE_MATCH_1}")
+  if(name MATCHES "_Vec(Builtin|BltnBtmsk)ILi${REGISTER_BYTES}E")
+    math(EXPR own "${own} + 1")
+  elseif(NOT name MATCHES "^DW\\.ref\\.")  # a pointer to the exception personality, the same at every level
+    string(APPEND foreign "\n  ${name}")
+  endif()
+endforeach()
+if(own EQUAL 0)
+  message(FATAL_ERROR "no weak symbol of level ${LEVEL} in ${OBJECT}: is this the right object?")
+endif()
+if(NOT foreign STREQUAL "")
+  message(FATAL_ERROR "weak symbols of ${OBJECT} that other objects may share:${foreign}")
+endif()
+message(STATUS "${LEVEL}: ${own} weak symbols, all of packs of ${REGISTER_BYTES} bytes")

@@ -1,0 +1,254 @@
+#include "evert/mesh/mesh_reader.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include <cstdlib>
+#include <filesystem>
+
+/// The bound on the stable step against dense eigenproblems.  PHYSICS 5 and 9
+namespace evert::test {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double largest_eigenvalue(const MatrixXd& k) {
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(k).eigenvalues().maxCoeff();
+}
+
+/// M^−½ A M^−½.
+MatrixXd per_mass(const MatrixXd& a, const std::vector<double>& mass) {
+  MatrixXd scaled = a;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) {
+      scaled(i, j) /=
+          std::sqrt(mass[static_cast<std::size_t>(i / 3)] * mass[static_cast<std::size_t>(j / 3)]);
+    }
+  }
+  return scaled;
+}
+
+std::vector<double> lumped_mass(const Body& body, double density = 1000) {
+  std::vector<double> mass(body.rest.size(), 0.0);
+  ElasticCells cells = body.elastic_cells();
+  cells.density = density;
+  add_lumped_mass(cells, body.rest, mass);
+  return mass;
+}
+
+/// Hooke's law at rest: K_ab = Σ_q V (μ (g_a·g_b I + g_b g_aᵀ) + λ g_a g_bᵀ).
+MatrixXd stiffness_at_rest(const Body& body, const Lame& lame) {
+  const auto size = static_cast<Eigen::Index>(3 * body.rest.size());
+  MatrixXd k = MatrixXd::Zero(size, size);
+  with_reference_element(
+      body.type, [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
+        for (LocalIndex c = 0; c < body.cells(); ++c) {
+          const auto cell = body.cell(c);
+          for (std::size_t q = 0; q < points; ++q) {
+            Mat3d rest{};
+            for (std::size_t a = 0; a < nodes; ++a) {
+              rest += outer(body.rest[static_cast<std::size_t>(cell[a])], element.gradients[q][a]);
+            }
+            const double volume = element.weights[q] * determinant(rest);
+            for (std::size_t a = 0; a < nodes; ++a) {
+              for (std::size_t b = 0; b < nodes; ++b) {
+                const Vec3d ga = transpose_times(inverse(rest), element.gradients[q][a]);
+                const Vec3d gb = transpose_times(inverse(rest), element.gradients[q][b]);
+                const Mat3d block = volume * (lame.mu * (dot(ga, gb) * identity<double>() + outer(gb, ga)) +
+                                              lame.lambda * outer(ga, gb));
+                for (std::size_t i = 0; i < 3; ++i) {
+                  for (std::size_t j = 0; j < 3; ++j) {
+                    k(3 * cell[a] + static_cast<Eigen::Index>(i),
+                      3 * cell[b] + static_cast<Eigen::Index>(j)) += block(i, j);
+                  }
+                }
+              }
+            }
+          }
+        }
+      });
+  return k;
+}
+
+/// −∂f/∂x by central differences.
+MatrixXd tangent_stiffness(ElasticBlock& block, NodalValues x) {
+  const auto size = static_cast<Eigen::Index>(x.size()) - 1;
+  MatrixXd k(size, size);
+  const double h = 1e-7;
+  for (Eigen::Index j = 0; j < size; ++j) {
+    const auto entry = static_cast<std::size_t>(j);
+    const double at = x[entry];
+    x[entry] = at + h;
+    const NodalValues forward = forces(block, x);
+    x[entry] = at - h;
+    const NodalValues backward = forces(block, x);
+    x[entry] = at;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      k(i, j) = -(forward[static_cast<std::size_t>(i)] - backward[static_cast<std::size_t>(i)]) / (2 * h);
+    }
+  }
+  return 0.5 * (k + k.transpose());
+}
+
+Body one_tet() {
+  return {
+      CellType::tet4, {{0, 0, 0}, {0.11, 0.01, 0}, {0.02, 0.09, -0.01}, {0.01, 0.03, 0.12}}, {0, 1, 2, 3}};
+}
+
+TEST(StableStep, OfOneTetrahedronAtRestIsExact) {
+  const Body body = one_tet();
+  for (const double nu : {0.0, 0.3, 0.45, 0.499}) {
+    const Lame lame = Lame::from_young_poisson(1e4, nu);
+    const double exact =
+        2 / std::sqrt(largest_eigenvalue(per_mass(stiffness_at_rest(body, lame), lumped_mass(body))));
+    for (const Material& material : all_materials(lame)) {
+      for (const auto& level : supported_levels()) {
+        const auto block = level_block(level, body, material, no_damping);
+        for (const NodalValues& x :
+             {nodal_values(body.rest), deformed(body, [](const Vec3d& p) { return rotation(1) * p; })}) {
+          const StableStep step = block->stable_step(x.data());
+          EXPECT_NEAR(step.undamped, exact, 1e-7 * exact)
+              << name_of(material) << ", " << nu << ", " << level.name;
+          EXPECT_EQ(step.damped, step.undamped);
+        }
+      }
+    }
+  }
+}
+
+/// M + Δt/2 C − Δt²/4 K is positive definite just below the damped step and not just above.
+TEST(StableStep, OfOneDampedTetrahedronAtRestIsExact) {
+  const Body body = one_tet();
+  const Lame lame = Lame::from_young_poisson(1e4, 0.3);
+  for (const double time : {1e-5, 1e-3, 1e-1}) {
+    for (const DampingModel model : {DampingModel::rotated, DampingModel::objective}) {
+      const Damping damping = Damping::stiffness_proportional(model, time, lame.lambda, lame.mu);
+      const auto block =
+          make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = lame}, damping);
+      const double step = block->stable_step(nodal_values(body.rest).data()).damped;
+      const MatrixXd k = per_mass(stiffness_at_rest(body, lame), lumped_mass(body));
+      const auto smallest = [&](double dt) {
+        return 1 - largest_eigenvalue((dt * dt / 4 - dt / 2 * time) * k);  // C = τK at rest
+      };
+      EXPECT_GT(smallest(step * (1 - 1e-6)), 0) << time;
+      EXPECT_LT(smallest(step * (1 + 1e-6)), 0) << time;
+      EXPECT_GT(step, block->stable_step(nodal_values(body.rest).data()).undamped);
+    }
+  }
+}
+
+/// The bound never exceeds the true limit at rest, for both elements and shaken meshes.
+TEST(StableStep, IsABoundAtRest) {
+  for (const CellType type : {CellType::tet4, CellType::hex8}) {
+    for (const double nu : {-0.3, 0.0, 0.3, 0.45}) {
+      const Body body = box(type, 2, 2, 2, 0.1, 0.2);
+      const Lame lame = Lame::from_young_poisson(1e4, nu);
+      const auto block =
+          make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = lame}, no_damping);
+      const double bound = block->stable_step(nodal_values(body.rest).data()).undamped;
+      const double exact =
+          2 / std::sqrt(largest_eigenvalue(per_mass(stiffness_at_rest(body, lame), lumped_mass(body))));
+      EXPECT_LE(bound, exact * (1 + 1e-12)) << nu;
+      EXPECT_GE(bound, 0.4 * exact) << nu;
+    }
+  }
+}
+
+/// Away from rest: rigorous for tetrahedra wherever the force has a tangent.
+TEST(StableStep, IsABoundAtEveryState) {
+  const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);
+  double worst = 0;
+  for (const Material& material : all_materials()) {
+    const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      const double squash = 1.2 - 0.05 * seed;
+      const NodalValues x = deformed(
+          body,
+          [=](const Vec3d& p) {
+            return Vec3d{p[0], squash * p[1], 1.1 * p[2]};
+          },
+          0.005, seed);
+      const double exact =
+          2 / std::sqrt(std::max(
+                  largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
+      const double bound = block->stable_step(x.data()).undamped;
+      EXPECT_LE(bound, exact * 1.001) << name_of(material) << ", squashed to " << squash;
+      worst = std::max(worst, exact / bound);
+    }
+  }
+  std::printf("true limit / bound: at most %.2f\n", worst);
+}
+
+TEST(StableStep, ShrinksAsNeoHookeanIsCompressed) {
+  const Body body = box(CellType::tet4, 2, 2, 2, 0.1, 0.0);
+  const auto block =
+      make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, rotated_damping);
+  StableStep before = block->stable_step(nodal_values(body.rest).data());
+  for (const double squash : {0.8, 0.6, 0.4}) {
+    const NodalValues x = deformed(body, [=](const Vec3d& p) { return Vec3d{p[0], squash * p[1], p[2]}; });
+    const StableStep now = block->stable_step(x.data());
+    EXPECT_LT(now.undamped, before.undamped);
+    EXPECT_GE(now.damped, now.undamped);
+    before = now;
+  }
+}
+
+TEST(StableStep, LevelsAndScalarsAgree) {
+  for (const CellType type : {CellType::tet4, CellType::hex8}) {
+    const Body body = box(type, 3, 2, 1);
+    for (const Material& material : all_materials()) {
+      for (const Damping& damping : {rotated_damping, objective_damping}) {
+        const auto scalar = scalar_block(body, material, damping);
+        for (const auto& level : supported_levels()) {
+          const auto block = level_block(level, body, material, damping, 3);
+          for (const State& state : awkward_states(body)) {
+            if (!state.unique || state.name == "scrambled") continue;
+            const StableStep a = scalar->stable_step(state.x.data());
+            const StableStep b = block->stable_step(state.x.data());
+            EXPECT_NEAR(a.undamped, b.undamped, 1e-6 * a.undamped) << name_of(material) << ", " << state.name;
+            EXPECT_NEAR(a.damped, b.damped, 1e-6 * a.damped) << name_of(material) << ", " << state.name;
+          }
+        }
+      }
+    }
+  }
+}
+
+/// PHYSICS 9: E 1e4, ν 0.3.
+struct ReferenceMesh {
+  const char* file;
+  double density;
+  double bound;  ///< [s] eq. (9)
+  double tolerance;
+};
+
+TEST(StableStep, OfTheReferenceMeshes) {
+  const char* folder = std::getenv("EVERT_SHARED_MESHES");
+  if (folder == nullptr || !std::filesystem::exists(folder))
+    GTEST_SKIP() << "EVERT_SHARED_MESHES names no folder";
+  const Lame lame = Lame::from_young_poisson(1e4, 0.3);
+  for (const auto& [file, density, bound, tolerance] :
+       {ReferenceMesh{"wedge_stack.msh", 0.05, 0.0716e-3, 0.002},
+        ReferenceMesh{"cut_cube.msh", 0.06, 0.4598e-3 / 1.79, 0.005},
+        ReferenceMesh{"ball20k.msh", 1000, 0.5117e-3 / 60.8, 0.005}}) {
+    const Mesh mesh = read_mesh(std::filesystem::path(folder) / file);
+    const CellBlock* tets = mesh.block(CellType::tet4);
+    ASSERT_NE(tets, nullptr) << file;
+    Body body{CellType::tet4, mesh.nodes, {tets->nodes.begin(), tets->nodes.end()}};
+    ElasticCells cells = body.elastic_cells();
+    cells.density = density;
+    const auto block = make_elastic_block(cells, body.rest, RotatedLinear{.lame = lame}, no_damping);
+    EXPECT_NEAR(block->stable_step(nodal_values(body.rest).data()).undamped, bound, tolerance * bound)
+        << file;
+    if (body.rest.size() > 200) continue;
+    const double exact =
+        2 /
+        std::sqrt(largest_eigenvalue(per_mass(stiffness_at_rest(body, lame), lumped_mass(body, density))));
+    std::printf("%s: true limit %.4f ms\n", file, 1e3 * exact);
+  }
+}
+
+}  // namespace
+}  // namespace evert::test
