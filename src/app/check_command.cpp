@@ -151,7 +151,10 @@ void report_cost(Report& report, const SceneConfig& scene, Simulation& simulatio
   double steps = 0;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const double end = i + 1 < stretches.size() ? stretches[i + 1].begin : scene.end_time;
-    steps += std::ceil((end - stretches[i].begin) / stretches[i].dt);
+    // frames are hit exactly: no step is longer than the time between them
+    const auto rate = scene.output.frames_per_second;
+    const double longest = rate ? std::min(stretches[i].dt, 1 / *rate) : stretches[i].dt;
+    steps += std::ceil((end - stretches[i].begin) / longest);
     report.line("time step",
                 formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
                     (scene.integrator.time_step ? ", fixed" : ", automatic, as the initial state suggests"));

@@ -9,7 +9,8 @@ namespace {
 std::string option_name(const std::string& argument) {
   if (argument.size() < 2 || argument[0] != '-') return "";
   const auto start = argument[1] == '-' ? 2U : 1U;
-  if (argument.size() == start || std::string("0123456789.").find(argument[start]) != std::string::npos) return "";
+  if (argument.size() == start || std::string("0123456789.").find(argument[start]) != std::string::npos)
+    return "";
   return argument.substr(start);
 }
 
@@ -24,7 +25,8 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const auto name = option_name(arguments[i]);
     const auto value = [&]() -> const std::string& {
-      if (i + 1 >= arguments.size()) throw UserError("-" + name + " needs a value: evert run -help shows which");
+      if (i + 1 >= arguments.size())
+        throw UserError("-" + name + " needs a value: evert run -help shows which");
       return arguments[++i];
     };
     if (name == "set") {
@@ -43,13 +45,14 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments) {
     } else if (!name.empty()) {
       // What follows one of PETSc's options is its value, unless it looks like the scene.
       run.petsc.push_back("-" + name);
-      if (i + 1 < arguments.size() && option_name(arguments[i + 1]).empty() && !ends_with_yaml(arguments[i + 1]))
+      if (i + 1 < arguments.size() && option_name(arguments[i + 1]).empty() &&
+          !ends_with_yaml(arguments[i + 1]))
         run.petsc.push_back(arguments[++i]);
     } else if (run.scene.empty()) {
       run.scene = arguments[i];
     } else {
-      throw UserError("'" + arguments[i] + "' is one argument too many: evert run takes one scene, '" + run.scene +
-                      "', and then options");
+      throw UserError("'" + arguments[i] + "' is one argument too many: evert run takes one scene, '" +
+                      run.scene + "', and then options");
     }
   }
   if (run.scene.empty() && !run.help) throw UserError("evert run needs a scene file: evert run scene.yaml");

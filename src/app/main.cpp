@@ -1,13 +1,4 @@
 // The program: hands each subcommand its arguments, and turns what it throws into one line and an exit code.
-#include <petscsys.h>
-
-#include <cstdio>
-#include <functional>
-#include <iostream>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "evert/app/check_command.hpp"
 #include "evert/app/command_line.hpp"
 #include "evert/app/explain_command.hpp"
@@ -19,6 +10,15 @@
 #include "evert/core/log.hpp"
 #include "evert/core/petsc.hpp"
 #include "evert/core/version.hpp"
+
+#include <petscsys.h>
+
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -50,7 +50,8 @@ int dispatch(const std::string& command, const Arguments& arguments) {
       {"view", [](const Arguments& rest) { return evert::view_command(rest, std::cout); }},
   };
   if (command == "run") return evert::run_command(MPI_COMM_WORLD, evert::parse_run_arguments(arguments));
-  if (const auto found = serial.find(command); found != serial.end()) return on_rank_zero(found->second, arguments);
+  if (const auto found = serial.find(command); found != serial.end())
+    return on_rank_zero(found->second, arguments);
   std::vector<std::string> names{"run"};
   for (const auto& [name, function] : serial) names.push_back(name);
   throw evert::UserError("there is no command '" + command + "': must be " + evert::list_of(names) +
@@ -74,7 +75,8 @@ int guarded(const std::string& command, const Arguments& arguments) {
   }
 }
 
-/// PETSc sees its own options only; a command line that cannot be taken apart is left to the command to complain about.
+/// PETSc sees its own options only; a command line that cannot be taken apart is left to the command to
+/// complain about.
 Arguments petsc_options(const std::string& command, const Arguments& arguments) {
   if (command != "run" && command != "check") return {};
   try {

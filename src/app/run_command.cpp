@@ -1,10 +1,5 @@
 #include "evert/app/run_command.hpp"
 
-#include <algorithm>
-#include <cstdio>
-#include <filesystem>
-#include <numeric>
-
 #include "evert/app/run_loop.hpp"
 #include "evert/app/run_observers.hpp"
 #include "evert/core/collective.hpp"
@@ -16,6 +11,11 @@
 #include "evert/scene/load.hpp"
 #include "evert/scene/petsc_options.hpp"
 #include "evert/sim/shape_error.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <numeric>
 
 namespace evert {
 namespace {
@@ -70,21 +70,21 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
   observers.statistics = observers.add(std::make_unique<RunStatistics>(look_interval(scene)));
   if (scene.output.frames_per_second) {
     const auto fields = fields_of(scene.output);
-    auto writer = restarted
-                      ? FrameWriter::continue_from(mesh, files("run.h5"), fields, simulation.time())
-                      : FrameWriter(mesh, files("run.h5"), fields);
-    observers.frames =
-        observers.add(std::make_unique<FrameObserver>(std::move(writer), 1 / *scene.output.frames_per_second));
+    auto writer = restarted ? FrameWriter::continue_from(mesh, files("run.h5"), fields, simulation.time())
+                            : FrameWriter(mesh, files("run.h5"), fields);
+    observers.frames = observers.add(
+        std::make_unique<FrameObserver>(std::move(writer), 1 / *scene.output.frames_per_second));
   }
   if (scene.output.energy_log) {
     auto log = restarted ? EnergyLog::continue_from(mesh.comm, files("energy.csv"), simulation.time())
                          : EnergyLog(mesh.comm, files("energy.csv"));
     observers.add(std::make_unique<EnergyObserver>(std::move(log), *scene.output.energy_log));
   }
-  observers.checkpoints = observers.add(std::make_unique<CheckpointObserver>(
-      CheckpointWriter(mesh, files("checkpoint.h5"), scene.identity),
-      scene.checkpoint.value_or(CheckpointConfig{})));
-  observers.add(std::make_unique<ProgressObserver>(simulation, scene.end_time, arguments.quiet, *observers.statistics));
+  observers.checkpoints = observers.add(
+      std::make_unique<CheckpointObserver>(CheckpointWriter(mesh, files("checkpoint.h5"), scene.identity),
+                                           scene.checkpoint.value_or(CheckpointConfig{})));
+  observers.add(
+      std::make_unique<ProgressObserver>(simulation, scene.end_time, arguments.quiet, *observers.statistics));
   return observers;
 }
 
@@ -100,7 +100,8 @@ GlobalIndex quadrature_points_of(const DistributedMesh& mesh) {
   return points;
 }
 
-RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Observers& observers, RunEnd end) {
+RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Observers& observers,
+                     RunEnd end) {
   const auto& simulation = *built.simulation;
   RunSummary summary;
   summary.scene = scene.name;
@@ -117,19 +118,20 @@ RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Ob
   summary.final_state = simulation.measure();
   summary.cpu_level = kernels::chosen_cpu_level().name;
   for (const auto& body : built.bodies)
-    summary.shape_errors.emplace_back(
-        body.name, rms_shape_error(simulation.mesh(), simulation.positions(), body.first_node, body.end_node));
+    summary.shape_errors.emplace_back(body.name, rms_shape_error(simulation.mesh(), simulation.positions(),
+                                                                 body.first_node, body.end_node));
   return summary;
 }
 
 /// The closing lines: what happened, and where it is.
 void print_outcome(const RunSummary& summary, const RunFiles& files) {
   const double points = static_cast<double>(std::max<GlobalIndex>(summary.quadrature_points, 1));
-  std::printf("%s: %s at t = %g s after %lld steps, %s; inverted: at most %.1f %% (t = %.3g s), %lld at the end\n",
-              summary.scene.c_str(), summary.outcome.c_str(), summary.simulated_time,
-              static_cast<long long>(summary.steps), duration_text(summary.wall_time).c_str(),
-              100 * static_cast<double>(summary.max_inverted_points) / points, summary.max_inverted_time,
-              static_cast<long long>(summary.final_state.inverted_points));
+  std::printf(
+      "%s: %s at t = %g s after %lld steps, %s; inverted: at most %.1f %% (t = %.3g s), %lld at the end\n",
+      summary.scene.c_str(), summary.outcome.c_str(), summary.simulated_time,
+      static_cast<long long>(summary.steps), duration_text(summary.wall_time).c_str(),
+      100 * static_cast<double>(summary.max_inverted_points) / points, summary.max_inverted_time,
+      static_cast<long long>(summary.final_state.inverted_points));
   for (const auto& [body, error] : summary.shape_errors)
     std::printf("  %s: rms distance to its rest shape %.3g m\n", body.c_str(), error);
   std::printf("  written to %s\n", files.directory.c_str());
@@ -154,8 +156,8 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
   if (rank_of(comm) != 0) return end == RunEnd::interrupted ? interrupted : done;
   if (!arguments.quiet) print_outcome(summary, files);
   if (end == RunEnd::reached_end_time) return done;
-  std::fprintf(stderr, "evert: interrupted at t = %g s; go on with: evert run %s -restart %s\n", simulation.time(),
-               arguments.scene.c_str(), files("checkpoint.h5").c_str());
+  std::fprintf(stderr, "evert: interrupted at t = %g s; go on with: evert run %s -restart %s\n",
+               simulation.time(), arguments.scene.c_str(), files("checkpoint.h5").c_str());
   return interrupted;
 }
 

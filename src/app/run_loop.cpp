@@ -1,10 +1,10 @@
 #include "evert/app/run_loop.hpp"
 
+#include "evert/core/log.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-
-#include "evert/core/log.hpp"
 
 namespace evert {
 namespace {
@@ -22,7 +22,8 @@ bool stop_requested(MPI_Comm comm) {
 
 double next_stop(const Simulation& simulation, double end_time,
                  std::span<const std::unique_ptr<Observer>> observers) {
-  double stop = std::min(end_time, simulation.next_event() > simulation.time() ? simulation.next_event() : end_time);
+  double stop =
+      std::min(end_time, simulation.next_event() > simulation.time() ? simulation.next_event() : end_time);
   for (const auto& observer : observers) stop = std::min(stop, observer->next_stop(simulation.time()));
   return stop;
 }
@@ -42,7 +43,8 @@ void catch_signals() {
   std::signal(SIGTERM, note_signal);
 }
 
-RunEnd run_loop(Simulation& simulation, double end_time, std::span<const std::unique_ptr<Observer>> observers) {
+RunEnd run_loop(Simulation& simulation, double end_time,
+                std::span<const std::unique_ptr<Observer>> observers) {
   const StageScope stage(Stage::time_steps);
   for (const auto& observer : observers) observer->observe(simulation, {});
   auto end = RunEnd::reached_end_time;

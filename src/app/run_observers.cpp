@@ -1,9 +1,9 @@
 #include "evert/app/run_observers.hpp"
 
+#include "evert/core/log.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "evert/core/log.hpp"
 
 namespace evert {
 
@@ -32,8 +32,9 @@ void FrameObserver::write(const Simulation& simulation) {
   const auto frames = writer_.frames();
   if (!frames.empty() && frames.back().time >= simulation.time()) return;
   const PhaseScope scope(Phase::io);
-  writer_.write({simulation.time(), simulation.steps(), simulation.positions(), simulation.velocities(),
-                 [&](std::size_t block, std::span<double> per_cell) { simulation.min_stretch(block, per_cell); }});
+  writer_.write(
+      {simulation.time(), simulation.steps(), simulation.positions(), simulation.velocities(),
+       [&](std::size_t block, std::span<double> per_cell) { simulation.min_stretch(block, per_cell); }});
 }
 
 double EnergyObserver::next_stop(double time) const {
@@ -51,7 +52,8 @@ CheckpointObserver::CheckpointObserver(CheckpointWriter writer, const Checkpoint
     : writer_(std::move(writer)), config_(config), written_at_wall_(MPI_Wtime()) {}
 
 double CheckpointObserver::next_stop(double time) const {
-  return config_.every_simulated ? Schedule(*config_.every_simulated).next_after(time) : Observer::next_stop(time);
+  return config_.every_simulated ? Schedule(*config_.every_simulated).next_after(time)
+                                 : Observer::next_stop(time);
 }
 
 bool CheckpointObserver::due(const Simulation& simulation) const {

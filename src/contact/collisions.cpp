@@ -1,17 +1,19 @@
 #include "evert/contact/collisions.hpp"
 
-#include <algorithm>
-
 #include "evert/math/nodal.hpp"
+
+#include <algorithm>
 
 namespace evert {
 namespace {
 
 /// The part along the surface of a velocity relative to the body's.
-Vec3d along_surface(const Vec3d& relative, const Vec3d& normal) { return relative - dot(relative, normal) * normal; }
+Vec3d along_surface(const Vec3d& relative, const Vec3d& normal) {
+  return relative - dot(relative, normal) * normal;
+}
 
-/// Coulomb friction on a sliding velocity when the normal velocity changes by `normal_change` ≥ 0: it shrinks by
-/// the coefficient times that and never turns round.  PHYSICS 8
+/// Coulomb friction on a sliding velocity when the normal velocity changes by `normal_change` ≥ 0: it shrinks
+/// by the coefficient times that and never turns round.  PHYSICS 8
 Vec3d rubbed(const Vec3d& sliding, double coefficient, double normal_change) {
   const double speed = norm(sliding);
   const double change = coefficient * normal_change;
@@ -31,8 +33,8 @@ Collisions::Collisions(std::vector<std::unique_ptr<Obstacle>> obstacles, std::sp
 }
 
 Obstacle* Collisions::find(const std::string& name) const {
-  const auto found =
-      std::find_if(obstacles_.begin(), obstacles_.end(), [&](const auto& obstacle) { return obstacle->name() == name; });
+  const auto found = std::find_if(obstacles_.begin(), obstacles_.end(),
+                                  [&](const auto& obstacle) { return obstacle->name() == name; });
   return found == obstacles_.end() ? nullptr : found->get();
 }
 
@@ -59,7 +61,8 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
   }
 }
 
-void Collisions::resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predicted, const StepInterval& step) {
+void Collisions::resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predicted,
+                              const StepInterval& step) {
   for (const auto& obstacle : obstacles_) {
     const double distance = obstacle->signed_distance(x, step.end);
     if (distance >= 0) continue;
@@ -73,7 +76,8 @@ void Collisions::resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predict
     v += approach * normal + (slides_on - sliding);
     const bool sticks =
         obstacle->friction() > 0 && norm(slides_on) <= standstill * (norm(v) + norm(body_velocity));
-    // The position: out of the body, which is a change −φ/Δt of the velocity that led here, with its friction.
+    // The position: out of the body, which is a change −φ/Δt of the velocity that led here, with its
+    // friction.
     const auto led_along = along_surface(predicted - body_velocity, normal);
     const auto left_along = sticks ? Vec3d{} : rubbed(led_along, obstacle->friction(), -distance / step.dt);
     x += step.dt * (left_along - led_along) - distance * normal;
@@ -84,7 +88,8 @@ void Collisions::resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predict
 
 void Collisions::constrain(std::span<const Contact> of_node, Vec3d v) {
   NodeConstraint constraint{of_node.front().node, {}, {}};
-  const auto holding = std::find_if(of_node.begin(), of_node.end(), [](const Contact& contact) { return contact.sticks; });
+  const auto holding =
+      std::find_if(of_node.begin(), of_node.end(), [](const Contact& contact) { return contact.sticks; });
   if (holding != of_node.end()) {
     v -= along_surface(v - holding->body_velocity, holding->normal);
   } else {
@@ -97,7 +102,8 @@ void Collisions::constrain(std::span<const Contact> of_node, Vec3d v) {
   constraints_.push_back(constraint);
 }
 
-bool Collisions::slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side) {
+bool Collisions::slide(std::span<const double> v, std::span<const double> reaction,
+                       std::span<double> right_side) {
   bool changed = false;
   constraints_.clear();
   for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
@@ -112,7 +118,8 @@ bool Collisions::slide(std::span<const double> v, std::span<const double> reacti
   return changed;
 }
 
-/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not. Returns whether it changed.
+/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not. Returns whether it
+/// changed.
 bool Collisions::rub(Contact& contact, const Vec3d& velocity, const Vec3d& reaction) {
   const double allowed = contact.obstacle->friction() * std::max(0.0, dot(reaction, contact.normal));
   const bool stuck = contact.sticks;

@@ -4,7 +4,10 @@ namespace evert {
 
 HalfSpace::HalfSpace(std::string name, double friction, const Vec3d& point, const Vec3d& normal,
                      const Vec3d& velocity)
-    : Obstacle(std::move(name), friction), point_(point), normal_((1 / norm(normal)) * normal), velocity_(velocity) {}
+    : Obstacle(std::move(name), friction),
+      point_(point),
+      normal_((1 / norm(normal)) * normal),
+      velocity_(velocity) {}
 
 double HalfSpace::signed_distance(const Vec3d& x, double t) const {
   return dot(normal_, x - point_ - t * velocity_);

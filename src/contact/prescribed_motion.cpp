@@ -6,7 +6,8 @@ namespace evert {
 namespace {
 
 Vec3d interpolate(std::span<const VelocityKeyframe> keyframes, double t) {
-  const auto later = std::find_if(keyframes.begin(), keyframes.end(), [t](const auto& key) { return key.time > t; });
+  const auto later =
+      std::find_if(keyframes.begin(), keyframes.end(), [t](const auto& key) { return key.time > t; });
   if (later == keyframes.begin()) return later->velocity;
   const auto earlier = later - 1;
   if (later == keyframes.end()) return earlier->velocity;

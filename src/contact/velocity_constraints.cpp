@@ -36,7 +36,8 @@ void project(std::span<const NodeConstraint> constraints, std::span<double> valu
 }
 
 void impose(std::span<const NodeConstraint> constraints, std::span<double> values) {
-  for (const auto& c : constraints) set_node_value(values, c.node, c.free * node_value(values, c.node) + c.prescribed);
+  for (const auto& c : constraints)
+    set_node_value(values, c.node, c.free * node_value(values, c.node) + c.prescribed);
 }
 
 void join(std::span<const NodeConstraint> first, std::span<const NodeConstraint> second,

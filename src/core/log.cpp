@@ -6,8 +6,8 @@ namespace evert {
 namespace {
 
 constexpr std::array<std::string_view, phase_count> phase_names{
-    "setup",         "force",   "stretch_svd",   "damping_apply", "damping_solve",
-    "contact",       "vector_update", "halo", "io"};
+    "setup",         "force", "stretch_svd", "damping_apply", "damping_solve", "contact",
+    "vector_update", "halo",  "io"};
 
 // PETSc's log is global to the process; so is ours.
 struct Log {

@@ -1,8 +1,8 @@
 #include "evert/core/petsc.hpp"
 
-#include <string>
-
 #include "evert/core/error.hpp"
+
+#include <string>
 
 namespace evert {
 namespace {
@@ -20,8 +20,9 @@ PetscErrorCode keep_message(MPI_Comm /*comm*/, int /*line*/, const char* /*funct
 void petsc_failed(PetscErrorCode code, const std::source_location& where) {
   const char* text = nullptr;
   static_cast<void>(PetscErrorMessage(code, &text, nullptr));
-  throw PetscFailure("PETSc error " + std::to_string(code) + " (" + (text != nullptr ? text : "unknown") + ") in " +
-                     where.function_name() + " at " + where.file_name() + ":" + std::to_string(where.line()));
+  throw PetscFailure("PETSc error " + std::to_string(code) + " (" + (text != nullptr ? text : "unknown") +
+                     ") in " + where.function_name() + " at " + where.file_name() + ":" +
+                     std::to_string(where.line()));
 }
 
 void check_options(const std::function<PetscErrorCode()>& calls) {

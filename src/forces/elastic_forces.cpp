@@ -1,10 +1,10 @@
 #include "evert/forces/elastic_forces.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "evert/core/collective.hpp"
 #include "evert/core/log.hpp"
+
+#include <algorithm>
+#include <limits>
 
 namespace evert {
 namespace {
@@ -23,11 +23,11 @@ BatchRange second_half(BatchRange range) { return {first_half(range).end, range.
 
 void clear(std::span<double> values) { std::fill(values.begin(), values.end(), 0.0); }
 
-/// Runs `compute` over all batches while values travel: half of the interior hides the update of `in`, the other half
-/// the sum of `out`, and the boundary stands between.
+/// Runs `compute` over all batches while values travel: half of the interior hides the update of `in`, the
+/// other half the sum of `out`, and the boundary stands between.
 template <class Compute>
-void overlapped(const Halo& halo, std::span<const std::unique_ptr<ElasticBlock>> blocks, NodeField& in, NodeField& out,
-                Compute&& compute) {
+void overlapped(const Halo& halo, std::span<const std::unique_ptr<ElasticBlock>> blocks, NodeField& in,
+                NodeField& out, Compute&& compute) {
   const auto each = [&](auto&& range_of) {
     for (const auto& block : blocks)
       if (block != nullptr) compute(*block, range_of(*block));
@@ -43,7 +43,8 @@ void overlapped(const Halo& halo, std::span<const std::unique_ptr<ElasticBlock>>
 
 double points_of(const DistributedMesh& mesh) {
   double points = 0;
-  for (const auto& cells : mesh.cells) points += quadrature_points(cells.type) * static_cast<double>(cells.size());
+  for (const auto& cells : mesh.cells)
+    points += quadrature_points(cells.type) * static_cast<double>(cells.size());
   return points;
 }
 
@@ -58,8 +59,8 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
     for (const auto& cells : mesh.cells) {
       const auto& [density, material, damping] = properties_of(cells);
       blocks_.push_back(cells.size() == 0 ? nullptr
-                                          : make_elastic_block(cells_of(cells, density), mesh.rest_positions, material,
-                                                               damping));
+                                          : make_elastic_block(cells_of(cells, density), mesh.rest_positions,
+                                                               material, damping));
       damped_ = damped_ || damping.model != DampingModel::none;
     }
   });
@@ -142,7 +143,8 @@ StableStep ElasticForces::stable_step(const NodeField& x) const {
 double ElasticForces::max_strain_rate(const NodeField& x, const NodeField& v) const {
   double largest = 0;
   for (const auto& block : blocks_)
-    if (block != nullptr) largest = std::max(largest, block->max_strain_rate(x.local().data(), v.local().data()));
+    if (block != nullptr)
+      largest = std::max(largest, block->max_strain_rate(x.local().data(), v.local().data()));
   return largest;
 }
 

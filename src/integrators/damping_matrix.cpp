@@ -10,7 +10,8 @@ constexpr std::array<double, 9> unit_block{1, 0, 0, 0, 1, 0, 0, 0, 1};
 LocalToGlobalHandle node_numbering(const DistributedMesh& mesh) {
   std::vector<PetscInt> globals;
   globals.reserve(static_cast<std::size_t>(mesh.local_nodes()));
-  for (LocalIndex i = 0; i < mesh.owned_nodes; ++i) globals.push_back(static_cast<PetscInt>(mesh.first_owned + i));
+  for (LocalIndex i = 0; i < mesh.owned_nodes; ++i)
+    globals.push_back(static_cast<PetscInt>(mesh.first_owned + i));
   for (const auto ghost : mesh.ghost_globals) globals.push_back(static_cast<PetscInt>(ghost));
   LocalToGlobalHandle map;
   check(ISLocalToGlobalMappingCreate(mesh.comm, 3, static_cast<PetscInt>(globals.size()), globals.data(),
@@ -51,8 +52,8 @@ void AssembledDamping::for_each_cell(Work&& work) {
   }
 }
 
-/// Adds cell_, the dense matrix of the nodes rows_ (local numbers). A symmetric format gets the blocks on and above the
-/// diagonal only: PETSc's own way of dropping the others fails on several ranks.
+/// Adds cell_, the dense matrix of the nodes rows_ (local numbers). A symmetric format gets the blocks on and
+/// above the diagonal only: PETSc's own way of dropping the others fails on several ranks.
 void AssembledDamping::add_cell(Mat mat) {
   const auto n = rows_.size();
   const auto count = static_cast<PetscInt>(n);
@@ -80,9 +81,8 @@ void AssembledDamping::preallocate(const char* type) {
   const auto numbering = node_numbering(mesh);
   const auto pattern = empty_matrix(mesh, MATPREALLOCATOR, numbering.get());
   check(MatSetUp(pattern.get()));
-  for_each_cell([&](const ElasticBlock& /*block*/, LocalIndex /*cell*/, std::span<const LocalIndex> /*nodes*/) {
-    add_cell(pattern.get());
-  });
+  for_each_cell([&](const ElasticBlock& /*block*/, LocalIndex /*cell*/,
+                    std::span<const LocalIndex> /*nodes*/) { add_cell(pattern.get()); });
   cell_.assign(9, 0.0);
   for (LocalIndex node = 0; node < mesh.owned_nodes; ++node) {  // undamped nodes have their mass
     rows_.assign(1, node);
@@ -92,7 +92,8 @@ void AssembledDamping::preallocate(const char* type) {
   check(MatAssemblyEnd(pattern.get(), MAT_FINAL_ASSEMBLY));
   mat_ = empty_matrix(mesh, type, numbering.get());
   check(MatPreallocatorPreallocate(pattern.get(), PETSC_FALSE, mat_.get()));
-  if (std::string_view(type) != MATBAIJ) check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));  // unknown to MPIBAIJ
+  if (std::string_view(type) != MATBAIJ)
+    check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));  // unknown to MPIBAIJ
 }
 
 void AssembledDamping::attach_rigid_body_modes() {
@@ -112,7 +113,8 @@ void AssembledDamping::share_projectors() {
     auto values = field.owned();
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = unit_block[3 * column + i % 3];
     for (const auto& c : damping_.constraints())
-      for (std::size_t k = 0; k < 3; ++k) values[3 * static_cast<std::size_t>(c.node) + k] = c.free.column[column][k];
+      for (std::size_t k = 0; k < 3; ++k)
+        values[3 * static_cast<std::size_t>(c.node) + k] = c.free.column[column][k];
     field.touched();
     halo.begin_update(field);
     halo.end_update(field);

@@ -1,11 +1,11 @@
 #include "evert/integrators/damping_solver.hpp"
 
+#include "evert/core/error.hpp"
+#include "evert/core/log.hpp"
+
 #include <algorithm>
 #include <array>
 #include <string>
-
-#include "evert/core/error.hpp"
-#include "evert/core/log.hpp"
 
 namespace evert {
 namespace {
@@ -34,7 +34,8 @@ class VecView {
 PetscErrorCode read_matrix_type(MPI_Comm comm, char* text, std::size_t size) {
   PetscFunctionBeginUser;
   PetscOptionsBegin(comm, "damping_", "Operator of the damping solves", nullptr);
-  PetscCall(PetscOptionsString("-mat_type", "shell (matrix-free), baij, sbaij or aij", nullptr, text, text, size, nullptr));
+  PetscCall(PetscOptionsString("-mat_type", "shell (matrix-free), baij, sbaij or aij", nullptr, text, text,
+                               size, nullptr));
   PetscOptionsEnd();
   PetscFunctionReturn(0);
 }
@@ -63,8 +64,8 @@ void require_entries_for(KSP ksp, const std::string& matrix_type) {
                     " needs the entries of the matrix: add -damping_mat_type baij, sbaij or aij");
 }
 
-/// GAMG keeps its first coarse spaces and eigenvalues unless told otherwise; ours change by orders of magnitude with the
-/// step and the material.
+/// GAMG keeps its first coarse spaces and eigenvalues unless told otherwise; ours change by orders of
+/// magnitude with the step and the material.
 void rebuild_multigrid(PC pc) {
   PetscBool told = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, "damping_", "-pc_gamg_reuse_interpolation", &told));
@@ -110,8 +111,8 @@ void DampingSolver::create_ksp() {
     return ksp;
   };
   if (assembled_ != nullptr) {
-    // Preconditioners of several parts read the options of their parts when they are first set up: once on trial, so
-    // that an option that nobody reads is noticed before the run.
+    // Preconditioners of several parts read the options of their parts when they are first set up: once on
+    // trial, so that an option that nobody reads is noticed before the run.
     operator_->set(0, {});
     assembled_->assemble();
     check(KSPSetUp(with_operator().get()));
@@ -163,7 +164,8 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
     const VecView right(projected_.get());
     const VecView change(correction_.get());
     const auto mass = elastic_.masses();
-    for (std::size_t i = 0; i < right.values().size(); ++i) change.values()[i] = right.values()[i] / mass[i / 3];
+    for (std::size_t i = 0; i < right.values().size(); ++i)
+      change.values()[i] = right.values()[i] / mass[i / 3];
   }
   check(VecAXPY(v.vec(), 1.0, correction_.get()));
   impose(constraints, v.owned());  // the correction has rounding in constrained directions
@@ -180,16 +182,17 @@ int DampingSolver::correct() {
   check(KSPGetConvergedReason(ksp_.get(), &reason));
   check(KSPGetIterationNumber(ksp_.get(), &iterations));
   if (reason < 0)
-    throw SimulationError("the damping solve did not converge (" + std::string(KSPConvergedReasons[reason]) + " after " +
-                          std::to_string(iterations) +
-                          " iterations); a smaller integrator.time_step, another -damping_pc_type or a larger "
-                          "-damping_ksp_max_it may help");
+    throw SimulationError(
+        "the damping solve did not converge (" + std::string(KSPConvergedReasons[reason]) + " after " +
+        std::to_string(iterations) +
+        " iterations); a smaller integrator.time_step, another -damping_pc_type or a larger "
+        "-damping_ksp_max_it may help");
   return static_cast<int>(iterations);
 }
 
 std::span<const double> DampingSolver::reaction(double s) {
-  // What was left over before the correction, less what the correction brought: A δ has no mass term in constrained
-  // directions, where δ = 0.
+  // What was left over before the correction, less what the correction brought: A δ has no mass term in
+  // constrained directions, where δ = 0.
   check(VecScale(residual_.get(), -1.0));
   add_damping(correction_.get(), residual_.get(), s);
   const PetscScalar* values = nullptr;

@@ -1,10 +1,10 @@
 #include "evert/integrators/newmark.hpp"
 
-#include <algorithm>
-#include <array>
-
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
+
+#include <algorithm>
+#include <array>
 
 namespace evert {
 namespace {
@@ -90,15 +90,17 @@ Newmark::Held Newmark::collide(System& system, double dt) {
 
 /// 4. (M + Δt/2 C(xⁿ⁺¹)) vⁿ⁺¹ = M ṽⁿ + Δt/2 [f(xⁿ) − C(xⁿ) ṽⁿ + f(xⁿ⁺¹)]
 ///
-/// In steps with contacts the damping is taken at the end of the step alone, (M + Δt C(xⁿ⁺¹)) vⁿ⁺¹: the trapezoidal rule
-/// lets stiffly damped modes alternate in sign, and the reactions that friction is made of with them.
+/// In steps with contacts the damping is taken at the end of the step alone, (M + Δt C(xⁿ⁺¹)) vⁿ⁺¹: the
+/// trapezoidal rule lets stiffly damped modes alternate in sign, and the reactions that friction is made of
+/// with them.
 int Newmark::correct(System& system, double dt, bool colliding) {
   const auto mass = system.masses();
   const auto v = system.v.owned();
   const auto f = system.f.owned();
   implicit_ = colliding ? dt : dt / 2;
   set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
-  if (!colliding) solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
+  if (!colliding)
+    solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
   system.update_forces();
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
@@ -106,9 +108,9 @@ int Newmark::correct(System& system, double dt, bool colliding) {
   return solver_.solve(implicit_, right_.get(), system.v, constraints_);
 }
 
-/// The solve held whatever friction may hold. Nodes that pull harder than Coulomb allows slide, and those that friction
-/// would turn round stick again: solved once more, with the impulses of sliding friction on the right, until no node
-/// changes between the two. Then the account of what the constraints exerted.
+/// The solve held whatever friction may hold. Nodes that pull harder than Coulomb allows slide, and those
+/// that friction would turn round stick again: solved once more, with the impulses of sliding friction on the
+/// right, until no node changes between the two. Then the account of what the constraints exerted.
 int Newmark::rub(System& system) {
   auto& collisions = system.collisions;
   int iterations = 0;
@@ -117,9 +119,8 @@ int Newmark::rub(System& system) {
   for (int pass = 0; pass < most_friction_passes; ++pass) {
     check(VecCopy(right_.get(), rubbed_right_.get()));
     int again = 0;
-    change_vec(rubbed_right_.get(), [&](std::span<double> b) {
-      again = collisions.slide(system.v.owned(), reaction, b) ? 1 : 0;
-    });
+    change_vec(rubbed_right_.get(),
+               [&](std::span<double> b) { again = collisions.slide(system.v.owned(), reaction, b) ? 1 : 0; });
     MPI_Allreduce(MPI_IN_PLACE, &again, 1, MPI_INT, MPI_MAX, system.mesh.comm);
     if (again == 0) break;
     friction = collisions.friction();

@@ -1,16 +1,16 @@
 #include "evert/integrators/time_step.hpp"
 
+#include "evert/core/error.hpp"
+
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "evert/core/error.hpp"
-
 namespace evert {
 namespace {
 
-// The bound moves with the strain, and strain by at most max_strain_increment in a step: a few steps old, it is
-// still within what `safety` covers.
+// The bound moves with the strain, and strain by at most max_strain_increment in a step: a few steps old, it
+// is still within what `safety` covers.
 constexpr int steps_between_estimates = 4;
 
 }  // namespace

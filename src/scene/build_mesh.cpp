@@ -47,8 +47,8 @@ void place(Mesh& mesh, const TransformConfig& transform) {
   for (auto& node : mesh.nodes) node = turn * (transform.scale * fit * (node - center)) + transform.translate;
 }
 
-/// Mean of the cells' corner means, weighted by the volume that the edges at the first corner span: exact for tet4 and
-/// for boxes of hex8.
+/// Mean of the cells' corner means, weighted by the volume that the edges at the first corner span: exact for
+/// tet4 and for boxes of hex8.
 Vec3d center_of_volume(const Mesh& mesh) {
   double volume = 0;
   Vec3d moment{};
@@ -64,7 +64,8 @@ Vec3d center_of_volume(const Mesh& mesh) {
       Vec3d mean{};
       for (std::size_t a = 0; a < n; ++a) mean += (1.0 / static_cast<double>(n)) * corner(a);
       const auto o = corner(0);
-      const double share = std::abs(dot(corner(edges[0]) - o, cross(corner(edges[1]) - o, corner(edges[2]) - o)));
+      const double share =
+          std::abs(dot(corner(edges[0]) - o, cross(corner(edges[1]) - o, corner(edges[2]) - o)));
       volume += share;
       moment += share * mean;
     }

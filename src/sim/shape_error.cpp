@@ -1,15 +1,16 @@
 #include "evert/sim/shape_error.hpp"
 
+#include "evert/math/nodal.hpp"
+#include "evert/math/svd3.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "evert/math/nodal.hpp"
-#include "evert/math/svd3.hpp"
-
 namespace evert {
 
-double rms_shape_error(const DistributedMesh& mesh, const NodeField& positions, GlobalIndex first, GlobalIndex end) {
+double rms_shape_error(const DistributedMesh& mesh, const NodeField& positions, GlobalIndex first,
+                       GlobalIndex end) {
   const auto for_each_node = [&](auto&& visit) {
     for (LocalIndex i = 0; i < mesh.owned_nodes; ++i) {
       const auto node = static_cast<std::size_t>(i);
@@ -18,7 +19,8 @@ double rms_shape_error(const DistributedMesh& mesh, const NodeField& positions, 
     }
   };
   const auto sum_over_ranks = [&](auto& values) {
-    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                  mesh.comm);
   };
 
   std::array<double, 7> centers{};  // Σ rest, Σ now, count
@@ -36,7 +38,9 @@ double rms_shape_error(const DistributedMesh& mesh, const NodeField& positions, 
   const Vec3d now_center{centers[3] / count, centers[4] / count, centers[5] / count};
 
   Mat3d covariance{};
-  for_each_node([&](const Vec3d& rest, const Vec3d& now) { covariance += outer(now - now_center, rest - rest_center); });
+  for_each_node([&](const Vec3d& rest, const Vec3d& now) {
+    covariance += outer(now - now_center, rest - rest_center);
+  });
   std::array<double, 9> entries{};
   for (std::size_t k = 0; k < 9; ++k) entries[k] = covariance.column[k / 3][k % 3];
   sum_over_ranks(entries);

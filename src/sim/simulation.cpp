@@ -1,13 +1,13 @@
 #include "evert/sim/simulation.hpp"
 
-#include <array>
-#include <cmath>
-#include <limits>
-
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace evert {
 namespace {
@@ -23,9 +23,10 @@ void sum_over_ranks(MPI_Comm comm, std::array<double, N>& values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), N, MPI_DOUBLE, MPI_SUM, comm);
 }
 
-const std::array<std::string, 9> impulse_names{"gravity_impulse_x",    "gravity_impulse_y",    "gravity_impulse_z",
-                                               "contact_impulse_x",    "contact_impulse_y",    "contact_impulse_z",
-                                               "constraint_impulse_x", "constraint_impulse_y", "constraint_impulse_z"};
+const std::array<std::string, 9> impulse_names{
+    "gravity_impulse_x",    "gravity_impulse_y",    "gravity_impulse_z",
+    "contact_impulse_x",    "contact_impulse_y",    "contact_impulse_z",
+    "constraint_impulse_x", "constraint_impulse_y", "constraint_impulse_z"};
 
 std::array<double, 9> as_array(const System::Impulses& impulses) {
   std::array<double, 9> values{};
@@ -38,7 +39,9 @@ std::array<double, 9> as_array(const System::Impulses& impulses) {
 }
 
 System::Impulses as_impulses(const std::array<double, 9>& values) {
-  return {{values[0], values[1], values[2]}, {values[3], values[4], values[5]}, {values[6], values[7], values[8]}};
+  return {{values[0], values[1], values[2]},
+          {values[3], values[4], values[5]},
+          {values[6], values[7], values[8]}};
 }
 
 }  // namespace
@@ -116,13 +119,17 @@ Measurements Simulation::measure() const {
     momentum += mass[i] * v;
     angular += mass[i] * cross(x, v);
   }
-  std::array<double, 9> sums{kinetic,     elastic_.energy(system_.x), potential,  momentum[0], momentum[1],
-                             momentum[2], angular[0],                 angular[1], angular[2]};
+  std::array<double, 9> sums{kinetic,     elastic_.energy(system_.x),
+                             potential,   momentum[0],
+                             momentum[1], momentum[2],
+                             angular[0],  angular[1],
+                             angular[2]};
   sum_over_ranks(mesh_.comm, sums);
   auto impulses = as_array(system_.impulses);
   sum_over_ranks(mesh_.comm, impulses);
   const auto since_restart = as_impulses(impulses);
-  Measurements all{sums[0], sums[1], sums[2], {sums[3], sums[4], sums[5]}, {sums[6], sums[7], sums[8]}, {}, {}, {}, 0};
+  Measurements all{sums[0], sums[1], sums[2], {sums[3], sums[4], sums[5]}, {sums[6], sums[7], sums[8]}, {},
+                   {},      {},      0};
   all.gravity_impulse = impulses_before_.gravity + since_restart.gravity;
   all.contact_impulse = impulses_before_.contact + since_restart.contact;
   all.constraint_impulse = impulses_before_.constraint + since_restart.constraint;
@@ -157,7 +164,8 @@ std::vector<StateScalar> Simulation::state_scalars() const {
   auto impulses = as_array(system_.impulses);
   sum_over_ranks(mesh_.comm, impulses);
   const auto before = as_array(impulses_before_);
-  for (std::size_t i = 0; i < impulses.size(); ++i) scalars.emplace_back(impulse_names[i], before[i] + impulses[i]);
+  for (std::size_t i = 0; i < impulses.size(); ++i)
+    scalars.emplace_back(impulse_names[i], before[i] + impulses[i]);
   return scalars;
 }
 
@@ -166,7 +174,8 @@ void Simulation::restore(std::span<const double> positions, std::span<const doub
   const auto value = [&](const std::string& name) {
     for (const auto& [key, number] : scalars)
       if (key == name) return number;
-    throw UserError("the checkpoint does not hold '" + name + "': it was written by another version of evert");
+    throw UserError("the checkpoint does not hold '" + name +
+                    "': it was written by another version of evert");
   };
   // All scalars are looked up before anything is changed.
   const TimeStepControl::State control{value("stable_time_step"), value("stable_time_step_age")};

@@ -1,11 +1,10 @@
 // Real meshes dropped on the ground: finite, and what the world gave is what they have.
 #include <gtest/gtest.h>
 
+#include "tests/support/scenes.hpp"
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-
-#include "tests/support/scenes.hpp"
 
 namespace evert {
 namespace {

@@ -1,13 +1,13 @@
 // From scrambled, flattened, collapsed and inside-out starts back to rest.
+#include "evert/sim/shape_error.hpp"
+
 #include <gtest/gtest.h>
 
+#include "tests/support/scenes.hpp"
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <random>
-
-#include "evert/sim/shape_error.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace evert {
 namespace {
@@ -29,7 +29,8 @@ events:  # first untangle with the momentum of the recoil, then come to rest
 
 const std::array<std::string, 3> meshes{
     "bodies.body.mesh={generate: ball, radius: 0.5, edge_length: 0.35}",
-    "bodies.body.mesh={generate: box, min: [-0.5, -0.2, -0.2], max: [0.5, 0.2, 0.2], cells: [5, 2, 2], cell: tet6}",
+    "bodies.body.mesh={generate: box, min: [-0.5, -0.2, -0.2], max: [0.5, 0.2, 0.2], cells: [5, 2, 2], cell: "
+    "tet6}",
     "bodies.body.mesh={generate: ellipsoid, radii: [0.5, 0.35, 0.3], edge_length: 0.28}"};
 
 /// A direction of its own for every seed.
@@ -70,8 +71,8 @@ Outcome recover(const std::string& model, const std::string& mesh, const std::st
   return outcome;
 }
 
-// A high compression limit leaves no barrier in the way of an element that must pass through inversion to untangle:
-// docs/recovery.md tells what lower limits do.
+// A high compression limit leaves no barrier in the way of an element that must pass through inversion to
+// untangle: docs/recovery.md tells what lower limits do.
 const std::string neo_hookean =
     "{model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4, compression_limit: 0.9}";
 const std::string rotated_linear = "{model: rotated_linear, youngs_modulus: 1.0e5, poissons_ratio: 0.4}";

@@ -1,10 +1,10 @@
 #pragma once
-#include <string>
-#include <vector>
-
 #include "evert/mesh/distributed_mesh.hpp"
 #include "evert/scene/build.hpp"
 #include "evert/scene/load.hpp"
+
+#include <string>
+#include <vector>
 
 /// Simulations for tests, from YAML as a user would write it.
 namespace evert::test {

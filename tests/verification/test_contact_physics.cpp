@@ -1,22 +1,22 @@
 // Friction and bounces against closed forms.
 #include <gtest/gtest.h>
 
+#include "tests/support/scenes.hpp"
 #include <cmath>
 #include <numbers>
-
-#include "tests/support/scenes.hpp"
 
 namespace evert {
 namespace {
 
-/// A stiff block on a plane tilted by `angle` [rad]: gravity is tilted instead of the plane. `damping_time` [s] is
-/// stiffness-proportional.
+/// A stiff block on a plane tilted by `angle` [rad]: gravity is tilted instead of the plane. `damping_time`
+/// [s] is stiffness-proportional.
 BuiltScene block_on_slope(double angle, double friction, double damping_time) {
   const double g = 9.81;
   const std::string yaml = R"(
 name: slope
 end_time: 1
-gravity: [)" + std::to_string(g * std::sin(angle)) + ", " + std::to_string(-g * std::cos(angle)) +
+gravity: [)" + std::to_string(g * std::sin(angle)) +
+                           ", " + std::to_string(-g * std::cos(angle)) +
                            R"(, 0]
 bodies:
   block:
@@ -97,7 +97,9 @@ obstacles:
   ground: {shape: half_space, normal: [0, 1, 0], friction: 0}
 )");
   auto& simulation = *scene.simulation;
-  const auto total = [](const Measurements& m) { return m.kinetic_energy + m.elastic_energy + m.gravitational_energy; };
+  const auto total = [](const Measurements& m) {
+    return m.kinetic_energy + m.elastic_energy + m.gravitational_energy;
+  };
   const auto start = simulation.measure();
   const double scale = start.gravitational_energy;
   double energy = total(start);

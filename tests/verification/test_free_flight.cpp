@@ -1,10 +1,9 @@
 // An elastic body without obstacles: what Newmark's scheme must conserve, and its order.
 #include <gtest/gtest.h>
 
+#include "tests/support/scenes.hpp"
 #include <algorithm>
 #include <cmath>
-
-#include "tests/support/scenes.hpp"
 
 namespace evert {
 namespace {
@@ -22,7 +21,9 @@ bodies:
 )";
 
 /// Half of the undamped bound: `auto` with safety 1 suggests the bound itself, strain limits aside.
-double half_stable_step(Simulation& simulation) { return 0.5 * simulation.elastic().stable_step(simulation.positions()).undamped; }
+double half_stable_step(Simulation& simulation) {
+  return 0.5 * simulation.elastic().stable_step(simulation.positions()).undamped;
+}
 
 class ElasticModels : public testing::TestWithParam<const char*> {
  protected:
@@ -39,7 +40,8 @@ TEST_P(ElasticModels, ConserveMomentaAndEnergyOver10000Steps) {
     simulation.step(dt);
     if (step % 500 != 499) continue;
     const auto now = simulation.measure();
-    energy_drift = std::max(energy_drift, std::abs(now.kinetic_energy + now.elastic_energy - energy) / energy);
+    energy_drift =
+        std::max(energy_drift, std::abs(now.kinetic_energy + now.elastic_energy - energy) / energy);
     EXPECT_LE(norm(now.momentum - start.momentum), 1e-12 * norm(start.momentum));
     EXPECT_LE(norm(now.angular_momentum - start.angular_momentum), 1e-10 * norm(start.angular_momentum));
   }
@@ -63,11 +65,12 @@ TEST_P(ElasticModels, AreOfSecondOrderInTheStep) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ElasticModels, testing::Values("neo_hookean", "rotated_linear", "st_venant_kirchhoff"));
+INSTANTIATE_TEST_SUITE_P(All, ElasticModels,
+                         testing::Values("neo_hookean", "rotated_linear", "st_venant_kirchhoff"));
 
 TEST(Damping, IsOfSecondOrderAndOnlyTakesEnergy) {
-  const std::vector<std::string> damped{"bodies.ball.damping={model: rotated, stiffness_proportional: 2.0e-3}",
-                                        "petsc.damping_ksp_rtol=1e-12"};
+  const std::vector<std::string> damped{
+      "bodies.ball.damping={model: rotated, stiffness_proportional: 2.0e-3}", "petsc.damping_ksp_rtol=1e-12"};
   const double end = 20 * half_stable_step(*test::build(spinning_ball, damped).simulation);
   const auto positions_with = [&](int steps) {
     auto scene = test::build(spinning_ball, damped);

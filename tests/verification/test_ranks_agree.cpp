@@ -1,9 +1,8 @@
 // The same scene on any number of ranks, twice, and restarted: the same answer.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/support/scenes.hpp"
+#include <cmath>
 
 namespace evert {
 namespace {

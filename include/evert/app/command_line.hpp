@@ -17,8 +17,8 @@ struct RunArguments {
   std::vector<std::string> petsc;      ///< everything else, in order
 };
 
-/// Takes the arguments after `evert run` apart; options may be written with one dash or two. Throws UserError when a value is missing
-/// or there is not exactly one scene.
+/// Takes the arguments after `evert run` apart; options may be written with one dash or two. Throws UserError
+/// when a value is missing or there is not exactly one scene.
 [[nodiscard]] RunArguments parse_run_arguments(std::span<const std::string> arguments);
 
 /// What `evert --help` prints.

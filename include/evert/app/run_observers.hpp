@@ -1,8 +1,4 @@
 #pragma once
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "evert/app/observer.hpp"
 #include "evert/io/checkpoint.hpp"
 #include "evert/io/csv_log.hpp"
@@ -10,10 +6,15 @@
 #include "evert/io/progress.hpp"
 #include "evert/scene/config.hpp"
 
+#include <memory>
+#include <string>
+#include <vector>
+
 /// What looks at a run: one small class each, made only where the scene asks for it.
 namespace evert {
 
-/// Counts what the summary reports. The inverted points are looked at whenever a frame or a row of the log is due.
+/// Counts what the summary reports. The inverted points are looked at whenever a frame or a row of the log is
+/// due.
 class RunStatistics final : public Observer {
  public:
   explicit RunStatistics(double interval) : schedule_(interval) {}
@@ -21,7 +22,7 @@ class RunStatistics final : public Observer {
   void finish(Simulation& simulation) override { look(simulation); }
 
   std::int64_t cg_iterations = 0;
-  GlobalIndex inverted = 0;      ///< at the last look
+  GlobalIndex inverted = 0;  ///< at the last look
   GlobalIndex max_inverted = 0;
   double max_inverted_time = 0;  ///< [s]
 
@@ -69,14 +70,15 @@ class CheckpointObserver final : public Observer {
   [[nodiscard]] bool due(const Simulation& simulation) const;
   CheckpointWriter writer_;
   CheckpointConfig config_;
-  double written_at_wall_;    // [s]
-  double written_at_ = -1;    // [s] simulated
+  double written_at_wall_;  // [s]
+  double written_at_ = -1;  // [s] simulated
 };
 
 /// The progress line.
 class ProgressObserver final : public Observer {
  public:
-  ProgressObserver(const Simulation& simulation, double end_time, bool quiet, const RunStatistics& statistics);
+  ProgressObserver(const Simulation& simulation, double end_time, bool quiet,
+                   const RunStatistics& statistics);
   void observe(Simulation& simulation, const StepReport& report) override;
   void finish(Simulation& simulation) override;
 

@@ -1,13 +1,14 @@
 #pragma once
+#include "evert/contact/obstacle.hpp"
+#include "evert/contact/velocity_constraints.hpp"
+
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "evert/contact/obstacle.hpp"
-#include "evert/contact/velocity_constraints.hpp"
-
-/// Nodes against obstacles: projection to the surface, friction, and the velocity constraints that the implicit
-/// solve then keeps.  paper A, section 9; docs/design/friction.md for how and why friction differs from the paper
+/// Nodes against obstacles: projection to the surface, friction, and the velocity constraints that the
+/// implicit solve then keeps.  paper A, section 9; docs/design/friction.md for how and why friction differs
+/// from the paper
 namespace evert {
 
 /// The end of the step that is being made.
@@ -25,21 +26,22 @@ class Collisions {
   [[nodiscard]] Obstacle* find(const std::string& name) const;
   [[nodiscard]] std::span<const std::unique_ptr<Obstacle>> obstacles() const { return obstacles_; }
 
-  /// Step 3 of PHYSICS 5, on the owned nodes (x y z each). `x` holds x̃ and gets xⁿ⁺¹, `v` holds vⁿ and gets ṽⁿ;
-  /// `predicted` is the velocity ṽ that led to x̃. A colliding node is moved to the surface and keeps only the
-  /// tangential motion that friction leaves; its velocity into the body becomes the body's.
-  /// Nodes that `prescribed` (sorted) leaves no freedom pass through.
+  /// Step 3 of PHYSICS 5, on the owned nodes (x y z each). `x` holds x̃ and gets xⁿ⁺¹, `v` holds vⁿ and gets
+  /// ṽⁿ; `predicted` is the velocity ṽ that led to x̃. A colliding node is moved to the surface and keeps only
+  /// the tangential motion that friction leaves; its velocity into the body becomes the body's. Nodes that
+  /// `prescribed` (sorted) leaves no freedom pass through.
   void resolve(std::span<double> x, std::span<double> v, std::span<const double> predicted,
                std::span<const NodeConstraint> prescribed, const StepInterval& step);
 
-  /// What the colliding nodes must keep in the solve, sorted by node: the normal velocity, and all of it where
-  /// friction holds the node.
+  /// What the colliding nodes must keep in the solve, sorted by node: the normal velocity, and all of it
+  /// where friction holds the node.
   [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }
 
-  /// Friction after a solve with constraints(), from its velocities `v` and `reaction` = A v − b per owned node [N s]:
-  /// nodes whose tangential reaction is more than Coulomb allows are let go, those that have turned round are held,
-  /// and `right_side`, b per owned node, gets the impulses of friction on those that slide. constraints() then holds
-  /// for a solve with it. Returns whether that solve is called for: a node has changed, or was not rubbed before.
+  /// Friction after a solve with constraints(), from its velocities `v` and `reaction` = A v − b per owned
+  /// node [N s]: nodes whose tangential reaction is more than Coulomb allows are let go, those that have
+  /// turned round are held, and `right_side`, b per owned node, gets the impulses of friction on those that
+  /// slide. constraints() then holds for a solve with it. Returns whether that solve is called for: a node
+  /// has changed, or was not rubbed before.
   bool slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side);
 
   /// After the last solve: friction stops a node and never turns it round.

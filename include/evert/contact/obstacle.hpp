@@ -1,8 +1,8 @@
 #pragma once
+#include "evert/math/vec3.hpp"
+
 #include <memory>
 #include <string>
-
-#include "evert/math/vec3.hpp"
 
 /// Rigid bodies that nodes collide with, as implicit surfaces.  paper A, section 9; PHYSICS 8
 namespace evert {
@@ -30,11 +30,12 @@ class Obstacle {
   double friction_;
 };
 
-/// Everything behind the plane through `point` with outward normal `normal` (need not be unit; not zero), moving
-/// with constant `velocity`.
+/// Everything behind the plane through `point` with outward normal `normal` (need not be unit; not zero),
+/// moving with constant `velocity`.
 class HalfSpace final : public Obstacle {
  public:
-  HalfSpace(std::string name, double friction, const Vec3d& point, const Vec3d& normal, const Vec3d& velocity = {});
+  HalfSpace(std::string name, double friction, const Vec3d& point, const Vec3d& normal,
+            const Vec3d& velocity = {});
   [[nodiscard]] double signed_distance(const Vec3d& x, double t) const override;
   [[nodiscard]] Vec3d normal(const Vec3d& /*x*/, double /*t*/) const override { return normal_; }
   [[nodiscard]] Vec3d velocity(const Vec3d& /*x*/, double /*t*/) const override { return velocity_; }

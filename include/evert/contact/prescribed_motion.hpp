@@ -1,10 +1,10 @@
 #pragma once
+#include "evert/contact/velocity_constraints.hpp"
+
 #include <array>
 #include <limits>
 #include <span>
 #include <vector>
-
-#include "evert/contact/velocity_constraints.hpp"
 
 /// Nodes that a scene holds or moves (Dirichlet conditions).
 namespace evert {
@@ -17,15 +17,15 @@ struct VelocityKeyframe {
 
 /// Owned nodes with a common prescribed velocity.
 struct PrescribedNodes {
-  std::vector<LocalIndex> nodes;             ///< sorted
-  std::vector<VelocityKeyframe> keyframes;   ///< linear in between, constant outside; not empty
-  std::array<bool, 3> axes{true, true, true};  ///< the components that are prescribed
-  double from = 0;                           ///< [s]
+  std::vector<LocalIndex> nodes;                           ///< sorted
+  std::vector<VelocityKeyframe> keyframes;                 ///< linear in between, constant outside; not empty
+  std::array<bool, 3> axes{true, true, true};              ///< the components that are prescribed
+  double from = 0;                                         ///< [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
-/// All prescribed nodes of a rank, as velocity constraints at any time. A node in several groups obeys the first
-/// for each component.
+/// All prescribed nodes of a rank, as velocity constraints at any time. A node in several groups obeys the
+/// first for each component.
 class PrescribedMotion {
  public:
   explicit PrescribedMotion(std::vector<PrescribedNodes> groups);

@@ -1,22 +1,24 @@
 #pragma once
-#include <span>
-#include <vector>
-
 #include "evert/core/index.hpp"
 #include "evert/math/vec3.hpp"
 
-/// Velocities that the implicit solve must not change: those of fixed and scripted nodes, and the normal ones of
-/// colliding nodes.  PHYSICS 5
+#include <span>
+#include <vector>
+
+/// Velocities that the implicit solve must not change: those of fixed and scripted nodes, and the normal ones
+/// of colliding nodes.  PHYSICS 5
 namespace evert {
 
-/// One constrained owned node: v = free · v + prescribed, with free an orthogonal projector and free·prescribed = 0.
+/// One constrained owned node: v = free · v + prescribed, with free an orthogonal projector and
+/// free·prescribed = 0.
 struct NodeConstraint {
   LocalIndex node = 0;
   Mat3d free{};        ///< P: identity less the constrained directions
   Vec3d prescribed{};  ///< [m/s], in the constrained directions only
 };
 
-/// The orthogonal projector onto what is perpendicular to all `directions` (unit or zero, need not be independent).
+/// The orthogonal projector onto what is perpendicular to all `directions` (unit or zero, need not be
+/// independent).
 [[nodiscard]] Mat3d projector_off(std::span<const Vec3d> directions);
 
 /// P·v at every constrained node of `values` (x y z per node).
@@ -25,8 +27,8 @@ void project(std::span<const NodeConstraint> constraints, std::span<double> valu
 /// P·v + prescribed at every constrained node.
 void impose(std::span<const NodeConstraint> constraints, std::span<double> values);
 
-/// Joins two lists sorted by node into one; a node in both keeps the directions of both, those of `first` winning
-/// where they disagree. Writes to `joined` without allocating when its capacity suffices.
+/// Joins two lists sorted by node into one; a node in both keeps the directions of both, those of `first`
+/// winning where they disagree. Writes to `joined` without allocating when its capacity suffices.
 void join(std::span<const NodeConstraint> first, std::span<const NodeConstraint> second,
           std::vector<NodeConstraint>& joined);
 

@@ -15,7 +15,9 @@ struct AlignedAllocator {
   template <class U>
   explicit AlignedAllocator(const AlignedAllocator<U>& /*other*/) {}
 
-  [[nodiscard]] T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
+  [[nodiscard]] T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new(n * sizeof(T), alignment));
+  }
   void deallocate(T* p, std::size_t /*n*/) { ::operator delete(p, alignment); }
   template <class U>
   struct rebind {

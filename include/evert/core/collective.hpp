@@ -1,10 +1,10 @@
 #pragma once
+#include "evert/core/error.hpp"
+
 #include <mpi.h>
 
 #include <exception>
 #include <string>
-
-#include "evert/core/error.hpp"
 
 /// Errors that happen on some ranks become errors on all of them, so that no rank waits for one that gave up.
 namespace evert {
@@ -12,8 +12,8 @@ namespace evert {
 [[nodiscard]] int rank_of(MPI_Comm comm);
 [[nodiscard]] int size_of(MPI_Comm comm);
 
-/// Collective. Throws UserError with the message of the lowest rank whose `message` is not empty; returns when all
-/// are empty.
+/// Collective. Throws UserError with the message of the lowest rank whose `message` is not empty; returns
+/// when all are empty.
 void agree_or_throw(MPI_Comm comm, const std::string& message);
 
 /// Collective. Runs `work` on rank 0 only; a UserError there is thrown on every rank.

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-/// The three tiers of errors: what a user can mend (UserError), what only we can mend (EVERT_ASSERT), and what
-/// PETSc or MPI report (PetscFailure, thrown by check() in core/petsc.hpp).
+/// The three tiers of errors: what a user can mend (UserError), what only we can mend (EVERT_ASSERT), and
+/// what PETSc or MPI report (PetscFailure, thrown by check() in core/petsc.hpp).
 namespace evert {
 
 /// Bad input: one sentence that says what is wrong, where, and what is allowed. Exit code 2.
@@ -29,13 +29,14 @@ class SimulationError : public std::runtime_error {
 /// "a, b or c".
 [[nodiscard]] std::string list_of(std::span<const std::string> words);
 
-[[noreturn]] void assertion_failed(const char* expression, const char* file, int line, const std::string& values);
+[[noreturn]] void assertion_failed(const char* expression, const char* file, int line,
+                                   const std::string& values);
 
 }  // namespace evert
 
-/// A bug of ours: prints the expression, the values and the rank, and aborts all ranks. Stays on in release builds;
-/// not for inner loops.
-#define EVERT_ASSERT(expression, values)                                          \
-  do {                                                                            \
+/// A bug of ours: prints the expression, the values and the rank, and aborts all ranks. Stays on in release
+/// builds; not for inner loops.
+#define EVERT_ASSERT(expression, values)                                                     \
+  do {                                                                                       \
     if (!(expression)) ::evert::assertion_failed(#expression, __FILE__, __LINE__, (values)); \
   } while (false)

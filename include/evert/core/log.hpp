@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <string_view>
 
-/// Where the time goes: one set of phases, shown by PETSc's -log_view and, without any option, in summary.json.
+/// Where the time goes: one set of phases, shown by PETSc's -log_view and, without any option, in
+/// summary.json.
 namespace evert {
 
 enum class Phase : std::size_t {
@@ -22,7 +23,8 @@ enum class Phase : std::size_t {
 inline constexpr std::size_t phase_count = 9;
 [[nodiscard]] std::string_view name_of(Phase phase);
 
-/// Registers the phases as PETSc events, and "Evert set-up" and "Evert time steps" as stages. Call once after PetscInitialize.
+/// Registers the phases as PETSc events, and "Evert set-up" and "Evert time steps" as stages. Call once after
+/// PetscInitialize.
 void register_log_events();
 
 enum class Stage { setup, time_steps };

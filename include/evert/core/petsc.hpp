@@ -24,9 +24,9 @@ inline void check(PetscErrorCode code, const std::source_location& where = std::
     petsc_failed(code, where);
 }
 
-/// Makes calls that read PETSc options, as collective as they are. A value that PETSc refuses (it cannot be asked
-/// beforehand) becomes a UserError with PETSc's own sentence, in place of its traceback on standard error; the objects
-/// involved are then only good for being destroyed.
+/// Makes calls that read PETSc options, as collective as they are. A value that PETSc refuses (it cannot be
+/// asked beforehand) becomes a UserError with PETSc's own sentence, in place of its traceback on standard
+/// error; the objects involved are then only good for being destroyed.
 void check_options(const std::function<PetscErrorCode()>& calls);
 
 /// Owns one PETSc object; `Destroy` is its destructor, e.g. VecDestroy.

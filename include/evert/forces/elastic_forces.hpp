@@ -1,13 +1,13 @@
 #pragma once
+#include "evert/forces/elastic_block.hpp"
+#include "evert/mesh/distributed_mesh.hpp"
+
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "evert/forces/elastic_block.hpp"
-#include "evert/mesh/distributed_mesh.hpp"
-
-/// The elastic bodies of a rank: the one loop that owns gather, kernel and scatter, and overlaps the halo with
-/// interior elements.
+/// The elastic bodies of a rank: the one loop that owns gather, kernel and scatter, and overlaps the halo
+/// with interior elements.
 namespace evert {
 
 /// What one entry of DistributedMesh::cells is made of.
@@ -19,15 +19,16 @@ struct ElasticProperties {
 
 class ElasticForces {
  public:
-  /// Collective. One ElasticBlock per entry of `mesh.cells`, with `properties` of its region; a UserError of any
-  /// rank (cells without volume) is thrown on all.
+  /// Collective. One ElasticBlock per entry of `mesh.cells`, with `properties` of its region; a UserError of
+  /// any rank (cells without volume) is thrown on all.
   ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties);
 
-  /// Collective. Brings the ghosts of `x` up to date, then `f` = elastic forces at x [N], summed over ranks on
-  /// owned nodes; C(x) is kept for apply_damping.  PHYSICS 5: F and its SVD once per step, here
+  /// Collective. Brings the ghosts of `x` up to date, then `f` = elastic forces at x [N], summed over ranks
+  /// on owned nodes; C(x) is kept for apply_damping.  PHYSICS 5: F and its SVD once per step, here
   void update(NodeField& x, NodeField& f);
 
-  /// Collective. `out` += factor · C v on owned nodes; updates the ghosts of `v`. The ghosts of `out` are scratch.
+  /// Collective. `out` += factor · C v on owned nodes; updates the ghosts of `v`. The ghosts of `out` are
+  /// scratch.
   void add_damping(NodeField& v, NodeField& out, double factor) const;
 
   /// Collective. Owned 3×3 diagonal blocks of C, 9 numbers by columns per owned node.
@@ -56,7 +57,8 @@ class ElasticForces {
  private:
   const DistributedMesh& mesh_;
   Halo halo_;
-  std::vector<std::unique_ptr<ElasticBlock>> blocks_;  // parallel to mesh_.cells; null where a rank has no cells
+  std::vector<std::unique_ptr<ElasticBlock>>
+      blocks_;  // parallel to mesh_.cells; null where a rank has no cells
   std::vector<double> masses_;
   mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
   mutable std::vector<double> local_diagonal_;

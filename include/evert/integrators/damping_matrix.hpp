@@ -3,12 +3,13 @@
 
 namespace evert {
 
-/// The operator of DampingOperator with its entries: for preconditioners that need them (gamg, hypre, icc, bjacobi).
-/// One assembly costs tens of products, so it is made only on request (`-damping_mat_type baij|sbaij|aij`).
+/// The operator of DampingOperator with its entries: for preconditioners that need them (gamg, hypre, icc,
+/// bjacobi). One assembly costs tens of products, so it is made only on request (`-damping_mat_type
+/// baij|sbaij|aij`).
 class AssembledDamping {
  public:
-  /// Collective. `type` is "baij", "sbaij" or "aij". Preallocates from the cells and attaches the rigid-body modes
-  /// as near null space.
+  /// Collective. `type` is "baij", "sbaij" or "aij". Preallocates from the cells and attaches the rigid-body
+  /// modes as near null space.
   AssembledDamping(const DampingOperator& damping, const char* type);
 
   /// Collective. Fills in the entries for the operator's present C, s and constraints.

@@ -1,16 +1,16 @@
 #pragma once
-#include <span>
-#include <vector>
-
 #include "evert/contact/velocity_constraints.hpp"
 #include "evert/core/petsc.hpp"
 #include "evert/forces/elastic_forces.hpp"
 
+#include <span>
+#include <vector>
+
 namespace evert {
 
 /// The operator of the implicit velocity solves, A = M + s P C P, as a matrix-free PETSc matrix (MATSHELL).
-/// C is the damping operator at the positions of the last force update, s = Δt/2, P the projector off the constrained
-/// velocities; P (M + s C) P + M (I − P) is the same thing since M is lumped.  PHYSICS 5
+/// C is the damping operator at the positions of the last force update, s = Δt/2, P the projector off the
+/// constrained velocities; P (M + s C) P + M (I − P) is the same thing since M is lumped.  PHYSICS 5
 class DampingOperator {
  public:
   /// Collective.

@@ -1,18 +1,18 @@
 #pragma once
-#include <memory>
-#include <span>
-
 #include "evert/integrators/damping_matrix.hpp"
 #include "evert/integrators/damping_operator.hpp"
 
+#include <memory>
+#include <span>
+
 namespace evert {
 
-/// Solves (M + s C) v = b for the velocities of the unconstrained directions, by PETSc's conjugate gradients with
-/// option prefix `damping_`.  PHYSICS 5
+/// Solves (M + s C) v = b for the velocities of the unconstrained directions, by PETSc's conjugate gradients
+/// with option prefix `damping_`.  PHYSICS 5
 ///
-/// `-damping_mat_type shell|baij|sbaij|aij` chooses the operator (default shell, matrix-free, preconditioned by its
-/// point blocks); all of PETSc's `-damping_ksp_*` and `-damping_pc_*` apply. `-damping_ksp_rtol` is relative to the
-/// residual of the starting guess, that is to the change of momentum that the step asks for.
+/// `-damping_mat_type shell|baij|sbaij|aij` chooses the operator (default shell, matrix-free, preconditioned
+/// by its point blocks); all of PETSc's `-damping_ksp_*` and `-damping_pc_*` apply. `-damping_ksp_rtol` is
+/// relative to the residual of the starting guess, that is to the change of momentum that the step asks for.
 class DampingSolver {
  public:
   /// Collective. Reads the options; throws UserError for one that cannot work.

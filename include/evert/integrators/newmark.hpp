@@ -1,10 +1,10 @@
 #pragma once
+#include "evert/integrators/damping_solver.hpp"
+#include "evert/integrators/system.hpp"
+
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "evert/integrators/damping_solver.hpp"
-#include "evert/integrators/system.hpp"
 
 namespace evert {
 
@@ -24,7 +24,8 @@ class Newmark {
   /// Collective.
   explicit Newmark(const System& system);
 
-  /// Collective. Advances x, v, f and the time by `dt` [s]. Throws SimulationError when a solve does not converge.
+  /// Collective. Advances x, v, f and the time by `dt` [s]. Throws SimulationError when a solve does not
+  /// converge.
   StepReport advance(System& system, double dt);
 
  private:
@@ -42,7 +43,7 @@ class Newmark {
   DampingSolver solver_;
   NodeField predicted_;  // ṽ at the middle of the step
   VecHandle right_, rubbed_right_;
-  double implicit_ = 0;  // s of the last velocity solve, M + s C [s]
+  double implicit_ = 0;                         // s of the last velocity solve, M + s C [s]
   std::span<const NodeConstraint> prescribed_;  // at the end of the step; system.prescribed owns them
   std::vector<NodeConstraint> constraints_;     // those and the normals of colliding nodes
   std::uint64_t forces_seen_ = 0;

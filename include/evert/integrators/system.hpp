@@ -1,11 +1,11 @@
 #pragma once
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "evert/contact/collisions.hpp"
 #include "evert/contact/prescribed_motion.hpp"
 #include "evert/forces/elastic_forces.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace evert {
 
@@ -17,11 +17,12 @@ struct System {
   PrescribedMotion& prescribed;
   Vec3d gravity;  ///< [m/s^2]
 
-  NodeField x;  ///< positions [m]; ghosts are up to date between steps
-  NodeField v;  ///< velocities [m/s]
-  NodeField f;  ///< elastic forces and weight at x, owned nodes [N]
+  NodeField x;      ///< positions [m]; ghosts are up to date between steps
+  NodeField v;      ///< velocities [m/s]
+  NodeField f;      ///< elastic forces and weight at x, owned nodes [N]
   double time = 0;  ///< [s]
-  std::uint64_t force_updates = 0;  ///< counts update_forces(), so that what depends on C(x) knows when it is stale
+  std::uint64_t force_updates =
+      0;  ///< counts update_forces(), so that what depends on C(x) knows when it is stale
 
   /// Impulses received since the start, this rank's share [N s].
   struct Impulses {
@@ -34,7 +35,8 @@ struct System {
   System& operator=(const System&) = delete;
 
   [[nodiscard]] std::span<const double> masses() const { return elastic.masses(); }
-  /// Collective. f = elastic forces + m g at x, and C(x). To be called whenever x, a material or gravity changes.
+  /// Collective. f = elastic forces + m g at x, and C(x). To be called whenever x, a material or gravity
+  /// changes.
   void update_forces();
 };
 

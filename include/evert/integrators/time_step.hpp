@@ -9,8 +9,8 @@ struct TimeStepOptions {
   double max_strain_increment = 0.1;  ///< largest change of any element's strain in one step
 };
 
-/// Chooses the step from the element bounds at the current tangent. They are re-estimated every few steps, and at
-/// once where the state has changed quickly; in between, the step may only shrink by the strain limit.
+/// Chooses the step from the element bounds at the current tangent. They are re-estimated every few steps,
+/// and at once where the state has changed quickly; in between, the step may only shrink by the strain limit.
 class TimeStepControl {
  public:
   explicit TimeStepControl(const TimeStepOptions& options) : options_(options) {}

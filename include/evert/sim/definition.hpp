@@ -1,12 +1,12 @@
 #pragma once
-#include <functional>
-#include <memory>
-#include <vector>
-
 #include "evert/contact/collisions.hpp"
 #include "evert/contact/prescribed_motion.hpp"
 #include "evert/forces/elastic_forces.hpp"
 #include "evert/integrators/time_step.hpp"
+
+#include <functional>
+#include <memory>
+#include <vector>
 
 namespace evert {
 
@@ -20,14 +20,14 @@ struct TimedEvent {
 
 /// Everything a simulation is made of, as values. Lists that the scene leaves empty stay empty.
 struct SimulationDefinition {
-  std::vector<ElasticProperties> properties;         ///< per entry of DistributedMesh::regions
+  std::vector<ElasticProperties> properties;  ///< per entry of DistributedMesh::regions
   std::vector<std::unique_ptr<Obstacle>> obstacles;
-  std::vector<PrescribedNodes> prescribed;           ///< this rank's owned nodes
+  std::vector<PrescribedNodes> prescribed;  ///< this rank's owned nodes
   std::vector<TimedEvent> events;
-  Vec3d gravity{};                                   ///< [m/s^2]
-  std::vector<Vec3d> initial_positions;              ///< per owned node [m]; empty: at rest shape
-  std::vector<Vec3d> initial_velocities;             ///< per owned node [m/s]; empty: at rest
-  double fixed_time_step = 0;                        ///< [s]; 0: chosen by TimeStepControl
+  Vec3d gravity{};                        ///< [m/s^2]
+  std::vector<Vec3d> initial_positions;   ///< per owned node [m]; empty: at rest shape
+  std::vector<Vec3d> initial_velocities;  ///< per owned node [m/s]; empty: at rest
+  double fixed_time_step = 0;             ///< [s]; 0: chosen by TimeStepControl
   TimeStepOptions time_step;
 };
 

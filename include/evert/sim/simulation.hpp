@@ -1,15 +1,15 @@
 #pragma once
+#include "evert/integrators/newmark.hpp"
+#include "evert/math/vec3.hpp"
+#include "evert/mesh/distributed_mesh.hpp"
+#include "evert/sim/definition.hpp"
+
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "evert/integrators/newmark.hpp"
-#include "evert/math/vec3.hpp"
-#include "evert/mesh/distributed_mesh.hpp"
-#include "evert/sim/definition.hpp"
 
 namespace evert {
 
@@ -19,11 +19,11 @@ struct Measurements {
   double elastic_energy = 0;
   double gravitational_energy = 0;
   Vec3d momentum{};
-  Vec3d angular_momentum{};        ///< about the origin
-  Vec3d gravity_impulse{};         ///< accumulated since the start [N s]
-  Vec3d contact_impulse{};         ///< from obstacles, normal and friction, accumulated since the start [N s]
-  Vec3d constraint_impulse{};      ///< from fixed and scripted nodes, accumulated since the start [N s]
-  GlobalIndex inverted_points = 0; ///< quadrature points with det F < 0; a tet4 has one
+  Vec3d angular_momentum{};    ///< about the origin
+  Vec3d gravity_impulse{};     ///< accumulated since the start [N s]
+  Vec3d contact_impulse{};     ///< from obstacles, normal and friction, accumulated since the start [N s]
+  Vec3d constraint_impulse{};  ///< from fixed and scripted nodes, accumulated since the start [N s]
+  GlobalIndex inverted_points = 0;  ///< quadrature points with det F < 0; a tet4 has one
 };
 
 /// A value that a checkpoint keeps besides positions and velocities; restored bit by bit.
@@ -36,7 +36,8 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by `dt` > 0 [s]. Throws SimulationError when a value is not finite or a solve does not converge.
+  /// Advances by `dt` > 0 [s]. Throws SimulationError when a value is not finite or a solve does not
+  /// converge.
   StepReport step(double dt);
   /// The same to exactly `end_time` [s], in one step.
   StepReport step_to(double end_time);
@@ -66,10 +67,11 @@ class Simulation {
   /// `obstacle` must exist.
   void set_friction(const std::string& obstacle, double coefficient);
 
-  /// All state besides positions and velocities (time, steps, step control, impulses). Impulses are summed over ranks.
+  /// All state besides positions and velocities (time, steps, step control, impulses). Impulses are summed
+  /// over ranks.
   [[nodiscard]] std::vector<StateScalar> state_scalars() const;
-  /// Replaces the whole state: owned positions and velocities (3 per owned node) and the scalars of state_scalars().
-  /// Events up to the restored time are applied. Throws UserError when a scalar is missing.
+  /// Replaces the whole state: owned positions and velocities (3 per owned node) and the scalars of
+  /// state_scalars(). Events up to the restored time are applied. Throws UserError when a scalar is missing.
   void restore(std::span<const double> positions, std::span<const double> velocities,
                std::span<const StateScalar> scalars);
 

@@ -1,14 +1,14 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-#include <string>
-
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
 #include "evert/integrators/damping_solver.hpp"
 #include "evert/math/nodal.hpp"
 #include "evert/mesh/generators.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
 
 namespace evert {
 namespace {
@@ -50,7 +50,8 @@ class DampedBox : public testing::Test {
     std::vector<NodeConstraint> list;
     if (mesh_.owned_nodes > 0) list.push_back({0, Mat3d{}, {{1, 2, 3}}});
     const Vec3d n{{0.6, 0, 0.8}};
-    for (LocalIndex i = 3; i < mesh_.owned_nodes; i += 3) list.push_back({i, projector_off(std::array{n}), 0.5 * n});
+    for (LocalIndex i = 3; i < mesh_.owned_nodes; i += 3)
+      list.push_back({i, projector_off(std::array{n}), 0.5 * n});
     return list;
   }
 
@@ -77,7 +78,8 @@ class DampedBox : public testing::Test {
       distribute(PETSC_COMM_WORLD, generate_box({{1, 0.5, 0.5}}, {4, 2, 2}, BoxCells::tet6));
   Lame lame_ = Lame::from_young_poisson(1e4, 0.4);
   std::vector<ElasticProperties> properties_{
-      {1000, NeoHookean{lame_}, Damping::stiffness_proportional(DampingModel::rotated, 0.05, lame_.lambda, lame_.mu)}};
+      {1000, NeoHookean{lame_},
+       Damping::stiffness_proportional(DampingModel::rotated, 0.05, lame_.lambda, lame_.mu)}};
   ElasticForces elastic_{mesh_, properties_};
   NodeField x_{mesh_}, v_{mesh_}, f_{mesh_};
   VecHandle right_;
@@ -125,13 +127,12 @@ TEST_P(EveryOperator, SolvesAgainAfterTheMaterialMoved) {
   EXPECT_LE(residual_norm(solver, 0.02, {}), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryOperator,
-                         testing::Values(Choice{"shell", "pbjacobi"}, Choice{"shell", "jacobi"}, Choice{"shell", "none"},
-                                         Choice{"baij", "pbjacobi"}, Choice{"baij", "bjacobi"}, Choice{"aij", "gamg"},
-                                         Choice{"sbaij", "jacobi"}, Choice{"sbaij", "bjacobi"}, Choice{"aij", "bjacobi"}),
-                         [](const auto& choice) {
-                           return std::string(choice.param.mat_type) + "_" + choice.param.pc_type;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, EveryOperator,
+    testing::Values(Choice{"shell", "pbjacobi"}, Choice{"shell", "jacobi"}, Choice{"shell", "none"},
+                    Choice{"baij", "pbjacobi"}, Choice{"baij", "bjacobi"}, Choice{"aij", "gamg"},
+                    Choice{"sbaij", "jacobi"}, Choice{"sbaij", "bjacobi"}, Choice{"aij", "bjacobi"}),
+    [](const auto& choice) { return std::string(choice.param.mat_type) + "_" + choice.param.pc_type; });
 
 TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
   const Option tolerance("-damping_ksp_rtol", "1e-13");
@@ -147,7 +148,8 @@ TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
   }
   const PetscScalar* right = nullptr;
   check(VecGetArrayRead(right_.get(), &right));
-  for (std::size_t i = 0; i < v_.owned().size(); ++i) missing[i % 3] += elastic_.masses()[i / 3] * v_.owned()[i] - right[i];
+  for (std::size_t i = 0; i < v_.owned().size(); ++i)
+    missing[i % 3] += elastic_.masses()[i / 3] * v_.owned()[i] - right[i];
   check(VecRestoreArrayRead(right_.get(), &right));
   MPI_Allreduce(MPI_IN_PLACE, exerted.components.data(), 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   MPI_Allreduce(MPI_IN_PLACE, missing.components.data(), 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);

@@ -1,10 +1,10 @@
+#include "evert/contact/collisions.hpp"
+#include "evert/math/nodal.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
-
-#include "evert/contact/collisions.hpp"
-#include "evert/math/nodal.hpp"
 
 namespace evert {
 namespace {
@@ -13,14 +13,17 @@ constexpr StepInterval step{0.1, 0.1};
 
 /// One node of mass 2 over the ground y = 0.
 struct OneNode {
-  explicit OneNode(double friction, const Vec3d& ground_velocity = {}) : collisions(ground(friction, ground_velocity), mass) {}
+  explicit OneNode(double friction, const Vec3d& ground_velocity = {})
+      : collisions(ground(friction, ground_velocity), mass) {}
 
   static std::vector<std::unique_ptr<Obstacle>> ground(double friction, const Vec3d& velocity) {
     std::vector<std::unique_ptr<Obstacle>> obstacles;
     obstacles.push_back(std::make_unique<HalfSpace>("ground", friction, Vec3d{}, Vec3d{{0, 1, 0}}, velocity));
     return obstacles;
   }
-  void resolve(std::span<const NodeConstraint> prescribed = {}) { collisions.resolve(x, v, predicted, prescribed, step); }
+  void resolve(std::span<const NodeConstraint> prescribed = {}) {
+    collisions.resolve(x, v, predicted, prescribed, step);
+  }
 
   std::vector<double> mass{2.0};
   std::vector<double> x{0, -0.01, 0}, v{1, -3, 0}, predicted{1, -3, 0};
@@ -103,7 +106,8 @@ TEST(Collisions, ASlidingNodeIsRubbedWithCoulombsImpulse) {
   EXPECT_TRUE(node.collisions.slide(node.v, std::vector<double>{0, 4, 0}, right));
   EXPECT_NEAR(right[0], -1, 1e-15);
   right.assign(3, 0.0);
-  EXPECT_FALSE(node.collisions.slide(node.v, std::vector<double>{0, -4, 0}, right)) << "adhesion rubs nothing";
+  EXPECT_FALSE(node.collisions.slide(node.v, std::vector<double>{0, -4, 0}, right))
+      << "adhesion rubs nothing";
 }
 
 TEST(Collisions, FrictionNeverTurnsANodeRound) {

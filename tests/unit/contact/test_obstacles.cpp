@@ -1,9 +1,9 @@
+#include "evert/contact/obstacle.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "evert/contact/obstacle.hpp"
 
 namespace evert {
 namespace {
@@ -25,7 +25,8 @@ void expect_distance_function(const Obstacle& obstacle, double t) {
     EXPECT_NEAR(norm(n), 1, 1e-14);
     EXPECT_NEAR(obstacle.signed_distance(x - phi * n, t), 0, 1e-13);
     constexpr double h = 1e-6;
-    EXPECT_NEAR((obstacle.signed_distance(x + h * n, t) - obstacle.signed_distance(x - h * n, t)) / (2 * h), 1, 1e-8);
+    EXPECT_NEAR((obstacle.signed_distance(x + h * n, t) - obstacle.signed_distance(x - h * n, t)) / (2 * h),
+                1, 1e-8);
   }
 }
 

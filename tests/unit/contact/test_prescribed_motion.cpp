@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "evert/contact/prescribed_motion.hpp"
+
+#include <gtest/gtest.h>
 
 namespace evert {
 namespace {

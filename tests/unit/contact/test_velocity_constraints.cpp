@@ -1,9 +1,9 @@
+#include "evert/contact/velocity_constraints.hpp"
+#include "evert/math/nodal.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
-
-#include "evert/contact/velocity_constraints.hpp"
-#include "evert/math/nodal.hpp"
 
 namespace evert {
 namespace {
@@ -37,8 +37,10 @@ TEST(Projector, TakesOutTheSpanOfItsDirections) {
 
 TEST(Join, KeepsTheOrderOfNodesAndBothConstraints) {
   const auto off = [](const Vec3d& n) { return projector_off(std::array{n}); };
-  const std::vector<NodeConstraint> first{{1, off({{1, 0, 0}}), {{2, 0, 0}}}, {5, off({{0, 1, 0}}), {{0, 3, 0}}}};
-  const std::vector<NodeConstraint> second{{0, off({{0, 0, 1}}), {{0, 0, 4}}}, {5, off({{0, 0.6, 0.8}}), {{0, 0.6, 0.8}}}};
+  const std::vector<NodeConstraint> first{{1, off({{1, 0, 0}}), {{2, 0, 0}}},
+                                          {5, off({{0, 1, 0}}), {{0, 3, 0}}}};
+  const std::vector<NodeConstraint> second{{0, off({{0, 0, 1}}), {{0, 0, 4}}},
+                                           {5, off({{0, 0.6, 0.8}}), {{0, 0.6, 0.8}}}};
   std::vector<NodeConstraint> joined;
   join(first, second, joined);
   ASSERT_EQ(joined.size(), 3U);
@@ -52,7 +54,8 @@ TEST(Join, KeepsTheOrderOfNodesAndBothConstraints) {
 
 TEST(Impose, KeepsTheFreePartAndSetsTheRest) {
   std::vector<double> values{1, 2, 3, 4, 5, 6};
-  const std::vector<NodeConstraint> constraints{{1, projector_off(std::array{Vec3d{{0, 1, 0}}}), {{0, -7, 0}}}};
+  const std::vector<NodeConstraint> constraints{
+      {1, projector_off(std::array{Vec3d{{0, 1, 0}}}), {{0, -7, 0}}}};
   impose(constraints, values);
   EXPECT_EQ(values, (std::vector<double>{1, 2, 3, 4, -7, 6}));
   project(constraints, values);
