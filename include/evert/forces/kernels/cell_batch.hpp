@@ -65,6 +65,20 @@ struct CellBatch {
     for (std::size_t a = 2; a < nodes_per_cell; ++a) sum += outer(edges[a - 1], gradient(q, a));
     return sum;
   }
+
+  /// Σ_q P_q ∂N_a/∂X for every node but the first, with `stress_at(q)` = |∂X/∂ξ| W P_q: the blocks G = Σ P
+  /// B_m of paper A, section 4.
+  template <class StressAt>
+  EVERT_ALWAYS_INLINE Edges<T, nodes_per_cell> nodal_sums(StressAt&& stress_at) const {
+    Edges<T, nodes_per_cell> sums;
+    const Mat3<T> first = stress_at(0);
+    for (std::size_t a = 1; a < nodes_per_cell; ++a) sums[a - 1] = first * gradient(0, a);
+    for (std::size_t q = 1; q < points; ++q) {
+      const Mat3<T> stress = stress_at(q);
+      for (std::size_t a = 1; a < nodes_per_cell; ++a) sums[a - 1] += stress * gradient(q, a);
+    }
+    return sums;
+  }
 };
 
 }  // namespace evert::kernels

@@ -11,7 +11,7 @@ namespace evert::kernels {
 struct CpuLevel {
   std::string_view name;  ///< v2 (SSE4.2, two doubles a register), v3 (AVX2, four), v4 (AVX-512, eight);
                           ///< elsewhere than on x86-64 only baseline
-  bool supported;  ///< this CPU runs it
+  bool supported;         ///< this CPU runs it
   /// The kernels of a kind of block; `lanes` is 0 in the answer for a cell type without a reference element.
   ElasticKernels (*find)(CellType type, const Material& material, DampingModel damping);
 };

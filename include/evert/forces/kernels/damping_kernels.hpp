@@ -90,24 +90,20 @@ EVERT_ALWAYS_INLINE Edges<T, element.nodes> damping_forces(const BlockArrays& bl
                                                            const T& alpha, const T& beta) {
   const CellBatch<T, element> batch(block, b);
   const DampingState<T, element, damping> state(block, b);
-  Edges<T, element.nodes> forces;
   if constexpr (keeps_rotated_gradients<element, damping>) {
     Mat3<T> l = outer(edges[0], state.rotated_gradient(1));
     for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], state.rotated_gradient(a));
     const Mat3<T> stress = viscous_stress(l, alpha, beta);
+    Edges<T, element.nodes> forces;
     for (std::size_t a = 1; a < element.nodes; ++a) forces[a - 1] = stress * state.rotated_gradient(a);
+    return forces;
   } else {
-    for (std::size_t q = 0; q < batch.points; ++q) {
+    return batch.nodal_sums([&](std::size_t q) {
       const Mat3<T> frame = state.frame(q);
       const Mat3<T> rate = transpose_times(frame, batch.field_gradient(edges, q));
-      const Mat3<T> stress = batch.volume(q) * (frame * viscous_stress(rate, alpha, beta));
-      for (std::size_t a = 1; a < element.nodes; ++a) {
-        const Vec3<T> force = stress * batch.gradient(q, a);
-        forces[a - 1] = q == 0 ? force : forces[a - 1] + force;
-      }
-    }
+      return batch.volume(q) * (frame * viscous_stress(rate, alpha, beta));
+    });
   }
-  return forces;
 }
 
 /// See ElasticBlock::add_damping.

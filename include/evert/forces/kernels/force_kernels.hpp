@@ -24,17 +24,13 @@ EVERT_STAGE void principal_stress_stage(const Model& model, const BlockArrays& b
 template <Real T, const auto& element>
 EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches, const PointRun<T>& run,
                                    double* f) {
-  std::size_t i = 0;
-  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+  std::size_t first = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
     const CellBatch<T, element> batch(block, b);
-    Edges<T, element.nodes> forces;
-    for (std::size_t q = 0; q < batch.points; ++q, ++i) {
-      const Mat3<T> stress = isotropic_tensor(run.left[i], run.plane[i], run.right[i], run.principal[i]);
-      for (std::size_t a = 1; a < element.nodes; ++a) {
-        const Vec3<T> force = stress * batch.gradient(q, a);
-        forces[a - 1] = q == 0 ? force : forces[a - 1] + force;
-      }
-    }
+    const auto forces = batch.nodal_sums([&](std::size_t q) {
+      const std::size_t i = first + q;
+      return isotropic_tensor(run.left[i], run.plane[i], run.right[i], run.principal[i]);
+    });
     scatter_balanced<T, element.nodes>(forces, f, batch.nodes);
   }
 }
