@@ -145,9 +145,10 @@ EVERT_ALWAYS_INLINE Svd3<T> assemble_svd3(const Deflation<T>& d) {
   return svd;
 }
 
-/// The SVD of any F. In double ‖F − U diag(σ) Vᵀ‖ ≤ 3e-15 ‖F‖ and U, V are orthonormal to 3e-15, for zero,
-/// flat, inverted and repeated cases and entries of any magnitude up to 2^1022 (above, σ1 may overflow;
-/// subnormal σ are rounded to their spacing). Small σ are accurate relative to σ1. NaN and ∞ give NaN.
+/// The SVD of any F. In double ‖F − U diag(σ) Vᵀ‖ / ‖F‖, ‖UᵀU − I‖ and ‖VᵀV − I‖ are at most 1e-14 (tested;
+/// the worst of 80 million seen is 3.3e-15), for zero, flat, inverted and repeated cases and entries of any
+/// magnitude up to 2^1021 (above, σ1 may overflow; subnormal σ are rounded to their spacing). Small σ are
+/// accurate relative to σ1. NaN and ∞ give NaN.
 template <class T>
 EVERT_ALWAYS_INLINE Svd3<T> svd3(const Mat3<T>& f) {
   return assemble_svd3(deflate(f));
