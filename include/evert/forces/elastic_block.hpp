@@ -1,26 +1,27 @@
 #pragma once
+#include "evert/elements/element_block.hpp"
+#include "evert/materials/damping.hpp"
+#include "evert/materials/material.hpp"
+
 #include <array>
 #include <memory>
 #include <span>
 #include <variant>
 
-#include "evert/elements/element_block.hpp"
-#include "evert/materials/damping.hpp"
-#include "evert/materials/material.hpp"
-
-/// Elastic and damping forces of one block of elements. Knows neither MPI nor PETSc: plain arrays of local nodal
-/// values, x y z per node, one double of slack behind the last node.
+/// Elastic and damping forces of one block of elements. Knows neither MPI nor PETSc: plain arrays of local
+/// nodal values, x y z per node, one double of slack behind the last node.
 namespace evert {
 
-/// What bounds the stable time step of a block. With m_e = ρV/4-like element masses, λ is the largest eigenvalue
-/// of K_e against M*_e (PHYSICS 9); a step is stable when 1 + Δt/2·(damping) − Δt²/4·λ ≥ 0 for every element.
+/// What bounds the stable time step of a block. With m_e = ρV/4-like element masses, λ is the largest
+/// eigenvalue of K_e against M*_e (PHYSICS 9); a step is stable when 1 + Δt/2·(damping) − Δt²/4·λ ≥ 0 for
+/// every element.
 struct StableStep {
   double undamped = 0;  ///< [s] largest step with explicit elastic forces and no damping
   double damped = 0;    ///< [s] the same with this block's damping taken implicitly; ≥ undamped
 };
 
-/// Forces of one (element type × material × damping) block; made by make_elastic_block for the CPU it runs on.
-/// None of its calls is collective. No call allocates except the constructor and set_material.
+/// Forces of one (element type × material × damping) block; made by make_elastic_block for the CPU it runs
+/// on. None of its calls is collective. No call allocates except the constructor and set_material.
 class ElasticBlock {
  public:
   virtual ~ElasticBlock() = default;
@@ -29,8 +30,8 @@ class ElasticBlock {
   [[nodiscard]] virtual BatchRange interior() const = 0;
   [[nodiscard]] virtual BatchRange boundary() const = 0;
 
-  /// Evaluates F and its diagonalisation at `x` once: adds the elastic forces −∂ψ/∂x [N] to `f`, keeps what C(x)
-  /// needs (9 numbers a point for `rotated`; nothing without damping).  paper A, sections 3-6
+  /// Evaluates F and its diagonalisation at `x` once: adds the elastic forces −∂ψ/∂x [N] to `f`, keeps what
+  /// C(x) needs (9 numbers a point for `rotated`; nothing without damping).  paper A, sections 3-6
   virtual void update(const double* x, double* f, BatchRange batches) = 0;
 
   [[nodiscard]] virtual bool damped() const = 0;
@@ -38,7 +39,8 @@ class ElasticBlock {
   virtual void add_damping(const double* v, double* out, double factor, BatchRange batches) const = 0;
   /// Adds factor · the 3×3 diagonal blocks of C, 9 numbers by columns per local node.
   virtual void add_damping_diagonal(double* blocks, double factor) const = 0;
-  /// One cell's damping matrix, dense row-major 3n×3n, for assembly. `cell` counts as in ElementBlock::cell_of_lane.
+  /// One cell's damping matrix, dense row-major 3n×3n, for assembly. `cell` counts as in
+  /// ElementBlock::cell_of_lane.
   virtual void damping_matrix(LocalIndex cell, std::span<double> matrix) const = 0;
   /// Local node numbers of a cell.
   [[nodiscard]] virtual std::span<const LocalIndex> cell_nodes(LocalIndex cell) const = 0;
@@ -46,7 +48,8 @@ class ElasticBlock {
 
   /// Elastic energy at `x` [J].
   [[nodiscard]] virtual double energy(const double* x) const = 0;
-  /// Per cell: the smallest signed principal stretch over its points; negative exactly when inverted (det F < 0).
+  /// Per cell: the smallest signed principal stretch over its points; negative exactly when inverted (det F <
+  /// 0).
   virtual void min_stretch(const double* x, std::span<double> per_cell) const = 0;
   /// Quadrature points with det F < 0 at `x`.
   [[nodiscard]] virtual LocalIndex inverted_points(const double* x) const = 0;
@@ -69,13 +72,15 @@ struct ElasticCells {
   double density = 0;                 ///< [kg/m^3]
 };
 
-/// Makes the block for the best instruction set of this CPU (x86-64-v2, v3, v4). `rest_positions` per local node.
-/// Throws UserError when a cell has zero or negative rest volume.
+/// Makes the block for the best instruction set of this CPU (x86-64-v2, v3, v4). `rest_positions` per local
+/// node. Throws UserError when a cell has zero or negative rest volume.
 [[nodiscard]] std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
                                                                std::span<const Vec3d> rest_positions,
-                                                               const Material& material, const Damping& damping);
+                                                               const Material& material,
+                                                               const Damping& damping);
 
 /// Adds each cell's mass, shared over its nodes, to `mass` (per local node, [kg]); stays positive.
-void add_lumped_mass(const ElasticCells& cells, std::span<const Vec3d> rest_positions, std::span<double> mass);
+void add_lumped_mass(const ElasticCells& cells, std::span<const Vec3d> rest_positions,
+                     std::span<double> mass);
 
 }  // namespace evert

@@ -1,9 +1,9 @@
 #pragma once
-#include <variant>
-
 #include "evert/materials/neo_hookean.hpp"
 #include "evert/materials/rotated_linear.hpp"
 #include "evert/materials/st_venant_kirchhoff.hpp"
+
+#include <variant>
 
 namespace evert {
 

@@ -1,13 +1,13 @@
 #pragma once
+#include "evert/core/index.hpp"
+#include "evert/math/vec3.hpp"
+
 #include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "evert/core/index.hpp"
-#include "evert/math/vec3.hpp"
 
 /// A whole unstructured mesh on one rank: what readers and generators make and partitioning distributes.
 namespace evert {
