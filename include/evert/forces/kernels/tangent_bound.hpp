@@ -32,7 +32,7 @@ template <Real T>
 EVERT_ALWAYS_INLINE T largest_eigenvalue_bound(const Mat3<T>& a) {
   const T mean = T(1.0 / 3) * trace(a);
   const Mat3<T> deviator = a - mean * identity<T>();
-  const T spread = sqrt(max(T(1.0 / 6) * contract(deviator, deviator), T(1e-300)));
+  const T spread = sqrt(max(T(1.0 / 6) * contract(deviator, deviator), T(1e-60)));
   // Roots of x³ − 3x − 2g, g = det(deviator) / (2 spread³), lie in [−2, 2].
   const T unit = T(1.0) / spread;
   const T g = T(0.5) * determinant(deviator) * (unit * unit * unit);
