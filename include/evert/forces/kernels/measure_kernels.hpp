@@ -146,7 +146,8 @@ EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, con
   const T half_damping = T(0.5) * time * lambda;
   const T damped = T(2.0) * (half_damping + sqrt(half_damping * half_damping + stiffness)) / stiffness;
   const T spinning = T(2.0) / sqrt(max(bound.spin, T(1e-30)) * lambda);
-  return {T(2.0) / sqrt(stiffness), min(damped, spinning)};
+  const T undamped = T(2.0) / sqrt(stiffness);
+  return {undamped, max(min(damped, spinning), undamped)};
 }
 
 /// See ElasticBlock::stable_step.

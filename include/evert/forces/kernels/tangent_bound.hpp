@@ -67,6 +67,9 @@ inline constexpr double equal_stretches = 1e-5;
 /// skew stiffness is not followed any closer.
 inline constexpr double smallest_stretch_sum = 0.2;
 
+/// Stands for the stiffness of a state that is not finite: it shrinks the step to nothing.
+inline constexpr double unresolvable = 1e200;
+
 /// `model` at the principal stretches `sigma`, in any order. `model.lame` must be positive definite (E > 0).
 template <Real T, class Model>
 EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3<T>& sigma) {
@@ -83,7 +86,8 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
     stretching = max(stretching, in_shear * shear);
     spin = max(spin, in_shear * (stress[i] + stress[j]) / max(sigma[i] + sigma[j], T(smallest_stretch_sum)));
   }
-  return {max(stretching, spin), spin};
+  const T total = max(stretching, spin);
+  return {select(total < T(unresolvable), total, T(unresolvable)), spin};
 }
 
 }  // namespace evert::kernels
