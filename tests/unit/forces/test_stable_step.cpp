@@ -111,7 +111,8 @@ TEST(StableStep, OfOneTetrahedronAtRestIsExact) {
           const StableStep step = block->stable_step(x.data());
           EXPECT_NEAR(step.undamped, exact, 1e-7 * exact)
               << name_of(material) << ", " << nu << ", " << level.name;
-          EXPECT_EQ(step.damped, step.undamped);
+          EXPECT_GE(step.damped, step.undamped);
+          EXPECT_NEAR(step.damped, step.undamped, 1e-14 * exact);
         }
       }
     }
@@ -159,7 +160,6 @@ TEST(StableStep, IsABoundAtRest) {
 /// Away from rest: rigorous for tetrahedra wherever the force has a tangent.
 TEST(StableStep, IsABoundAtEveryState) {
   const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);
-  double worst = 0;
   for (const Material& material : all_materials()) {
     const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
     for (unsigned seed = 0; seed < 40; ++seed) {
@@ -175,10 +175,11 @@ TEST(StableStep, IsABoundAtEveryState) {
                   largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
       const double bound = block->stable_step(x.data()).undamped;
       EXPECT_LE(bound, exact * 1.001) << name_of(material) << ", squashed to " << squash;
-      worst = std::max(worst, exact / bound);
+      // Not wildly below either; with `clamp` it is that of the clamped stretches, stiffer than the force is.
+      EXPECT_GE(bound, exact / (name_of(material).ends_with("clamp") ? 8 : 3))
+          << name_of(material) << ", " << squash;
     }
   }
-  std::printf("true limit / bound: at most %.2f\n", worst);
 }
 
 TEST(StableStep, ShrinksAsNeoHookeanIsCompressed) {
@@ -216,37 +217,69 @@ TEST(StableStep, LevelsAndScalarsAgree) {
   }
 }
 
-/// PHYSICS 9: E 1e4, ν 0.3.
+TEST(StableStep, OfAStateThatIsNotFiniteIsNothing) {
+  const Body body = box(CellType::tet4, 2, 2, 2);
+  for (const Material& material : all_materials()) {
+    const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, rotated_damping);
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      NodalValues x = nodal_values(body.rest);
+      x[40] = bad;
+      EXPECT_LT(block->stable_step(x.data()).undamped, 1e-50);
+    }
+  }
+}
+
+/// The smallest step over the cells, each on its own with its share of the mass: eq. (9), by dense
+/// eigenproblems.
+double smallest_own_step(const Body& body, const Lame& lame, double density) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (LocalIndex c = 0; c < body.cells(); ++c) {
+    Body alone{body.type, {}, {}};
+    for (const LocalIndex node : body.cell(c)) {
+      alone.nodes.push_back(static_cast<LocalIndex>(alone.rest.size()));
+      alone.rest.push_back(body.rest[static_cast<std::size_t>(node)]);
+    }
+    const MatrixXd k = per_mass(stiffness_at_rest(alone, lame), lumped_mass(alone, density));
+    smallest = std::min(smallest, 2 / std::sqrt(largest_eigenvalue(k)));
+  }
+  return smallest;
+}
+
+/// The limits that PHYSICS 9 gives for E = 1e4, ν = 0.3.
 struct ReferenceMesh {
   const char* file;
-  double density;
-  double bound;  ///< [s] eq. (9)
-  double tolerance;
+  double density;     ///< [kg/m^3]
+  double true_limit;  ///< [s] 2/√λmax(M⁻¹K)
+  double ratio;       ///< of the true limit to the bound (9); 0: not given to these digits
 };
 
 TEST(StableStep, OfTheReferenceMeshes) {
   const char* folder = std::getenv("EVERT_SHARED_MESHES");
-  if (folder == nullptr || !std::filesystem::exists(folder))
+  if (folder == nullptr || !std::filesystem::exists(folder)) {
     GTEST_SKIP() << "EVERT_SHARED_MESHES names no folder";
+  }
   const Lame lame = Lame::from_young_poisson(1e4, 0.3);
-  for (const auto& [file, density, bound, tolerance] :
-       {ReferenceMesh{"wedge_stack.msh", 0.05, 0.0716e-3, 0.002},
-        ReferenceMesh{"cut_cube.msh", 0.06, 0.4598e-3 / 1.79, 0.005},
-        ReferenceMesh{"ball20k.msh", 1000, 0.5117e-3 / 60.8, 0.005}}) {
+  for (const auto& [file, density, true_limit, ratio] :
+       {ReferenceMesh{"wedge_stack.msh", 0.05, 0.1355e-3, 1.89},
+        ReferenceMesh{"cut_cube.msh", 0.06, 0.4598e-3, 0}, ReferenceMesh{"ball404.msh", 1000, 3.791e-3, 0},
+        ReferenceMesh{"ball20k.msh", 1000, 0.5117e-3, 60.8}}) {
     const Mesh mesh = read_mesh(std::filesystem::path(folder) / file);
     const CellBlock* tets = mesh.block(CellType::tet4);
     ASSERT_NE(tets, nullptr) << file;
-    Body body{CellType::tet4, mesh.nodes, {tets->nodes.begin(), tets->nodes.end()}};
+    const Body body{CellType::tet4, mesh.nodes, {tets->nodes.begin(), tets->nodes.end()}};
     ElasticCells cells = body.elastic_cells();
     cells.density = density;
     const auto block = make_elastic_block(cells, body.rest, RotatedLinear{.lame = lame}, no_damping);
-    EXPECT_NEAR(block->stable_step(nodal_values(body.rest).data()).undamped, bound, tolerance * bound)
-        << file;
-    if (body.rest.size() > 200) continue;
-    const double exact =
-        2 /
-        std::sqrt(largest_eigenvalue(per_mass(stiffness_at_rest(body, lame), lumped_mass(body, density))));
-    std::printf("%s: true limit %.4f ms\n", file, 1e3 * exact);
+    const double bound = block->stable_step(nodal_values(body.rest).data()).undamped;
+    EXPECT_NEAR(bound, smallest_own_step(body, lame, density), 1e-9 * bound) << file;
+    if (ratio > 0) {
+      EXPECT_NEAR(true_limit / bound, ratio, 0.005 * ratio) << file;
+    }
+    if (body.cells() < 1000) {
+      const MatrixXd k = per_mass(stiffness_at_rest(body, lame), lumped_mass(body, density));
+      EXPECT_NEAR(2 / std::sqrt(largest_eigenvalue(k)), true_limit, 0.005 * true_limit) << file;
+    }
   }
 }
 

@@ -87,7 +87,8 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
     spin = max(spin, in_shear * (stress[i] + stress[j]) / max(sigma[i] + sigma[j], T(smallest_stretch_sum)));
   }
   const T total = max(stretching, spin);
-  return {select(total < T(unresolvable), total, T(unresolvable)), spin};
+  const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable);
+  return {select(finite, total, T(unresolvable)), spin};
 }
 
 }  // namespace evert::kernels
