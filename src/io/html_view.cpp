@@ -24,12 +24,14 @@ namespace {
 /// What the colours show.
 enum class Colouring { none, inverted, min_stretch };
 
-/// One frame, per vertex of the surface.
+/// One frame: values per vertex of the surface, and where elements are inverted.
 struct ShownFrame {
   std::size_t number = 0;  // in the run
   double time = 0;         // [s]
   std::vector<Vec3d> positions{};
   std::vector<double> values{};  // empty without colouring; negative where inverted
+  std::vector<Vec3d>
+      inverted{};  // centres of inverted cells, inner ones too; no more than there are vertices
   double inverted_fraction = 0;
 };
 
@@ -43,8 +45,8 @@ std::vector<std::size_t> evenly_spaced(std::size_t count, std::size_t shown) {
   return numbers;
 }
 
-/// Bytes of a frame in the page: four numbers of 16 bits a vertex, in base64.
-std::size_t page_bytes_a_frame(const Surface& surface) { return surface.nodes.size() * 8 * 4 / 3 + 64; }
+/// Bytes of a frame in the page at most, in base64: four numbers of 16 bits a vertex, three an inverted cell.
+std::size_t page_bytes_a_frame(const Surface& surface) { return surface.nodes.size() * (8 + 6) * 4 / 3 + 64; }
 
 std::size_t frames_that_fit(const Surface& surface, std::size_t max_bytes) {
   const auto fixed = view_page.size() + surface.triangles.size() * 12 * 4 / 3;
@@ -83,18 +85,40 @@ Vec3d upright(const Vec3d& position, std::size_t up) {
   return {position[(up + 2) % 3], position[up], position[(up + 1) % 3]};
 }
 
-ShownFrame shown_frame(const RunReader& run, const Surface& surface, std::size_t number, Colouring colouring,
-                       std::size_t up) {
+/// Centres of the cells with negative values; evenly thinned out to `most`.
+std::vector<Vec3d> centres_of_inverted(const Mesh& mesh, std::span<const Vec3d> positions,
+                                       std::span<const double> values, std::size_t most) {
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(values, [](double v) { return v < 0; }));
+  const auto stride = (count + most - 1) / most;
+  std::vector<Vec3d> centres;
+  std::size_t cell = 0;
+  std::size_t met = 0;
+  for (const auto& block : mesh.cells) {
+    const auto nodes_a_cell = static_cast<std::size_t>(node_count(block.type));
+    for (std::size_t first = 0; first < block.nodes.size(); first += nodes_a_cell) {
+      if (!(values[cell++] < 0) || met++ % stride != 0) continue;
+      Vec3d sum{};
+      for (const auto node : std::span(block.nodes).subspan(first, nodes_a_cell))
+        sum += positions[static_cast<std::size_t>(node)];
+      centres.push_back(sum * (1 / static_cast<double>(nodes_a_cell)));
+    }
+  }
+  return centres;
+}
+
+ShownFrame shown_frame(const RunReader& run, const Mesh& mesh, const Surface& surface, std::size_t number,
+                       Colouring colouring, std::size_t up) {
   ShownFrame frame{.number = number, .time = run.frames()[number].time};
   const auto name = "frame " + std::to_string(number) + " of '" + run.path() + "'";
   if (!std::isfinite(frame.time)) throw UserError(name + " has no finite time");
-  const auto positions = run.positions(number);
+  auto positions = run.positions(number);
   require_finite(positions, name);
-  for (const auto node : surface.nodes)
-    frame.positions.push_back(upright(positions[static_cast<std::size_t>(node)], up));
+  for (auto& position : positions) position = upright(position, up);
+  for (const auto node : surface.nodes) frame.positions.push_back(positions[static_cast<std::size_t>(node)]);
   if (colouring == Colouring::none) return frame;
   const auto values = cell_values(run, number, colouring);
   frame.values = smallest_at_vertices(surface, values);
+  frame.inverted = centres_of_inverted(mesh, positions, values, surface.nodes.size());
   const auto inverted = std::ranges::count_if(values, [](double value) { return value < 0; });
   frame.inverted_fraction = static_cast<double>(inverted) / static_cast<double>(values.size());
   return frame;
@@ -104,10 +128,12 @@ using Bounds = std::pair<Vec3d, Vec3d>;
 
 Bounds bounds_of(std::span<const ShownFrame> frames) {
   std::vector<Vec3d> corners;
-  for (const auto& frame : frames) {
-    const auto [lower, upper] = bounds_of(frame.positions);
-    corners.insert(corners.end(), {lower, upper});
-  }
+  for (const auto& frame : frames)
+    for (const auto& points : {std::span(frame.positions), std::span(frame.inverted)}) {
+      if (points.empty()) continue;
+      const auto [lower, upper] = bounds_of(points);
+      corners.insert(corners.end(), {lower, upper});
+    }
   return bounds_of(corners);
 }
 
@@ -139,15 +165,22 @@ std::uint16_t quantised_stretch(double stretch) {
   return static_cast<std::uint16_t>(middle + (stretch < 0 ? std::min(rounded, -1) : rounded));
 }
 
+void append(std::string& bytes, const Vec3d& position, const Bounds& bounds) {
+  for (std::size_t c = 0; c < 3; ++c)
+    append(bytes, quantised(position[c], bounds.first[c], bounds.second[c]));
+}
+
+/// The vertices and, after a blank, the inverted cells.
 std::string frame_text(const ShownFrame& frame, const Bounds& bounds) {
-  std::string bytes;
-  bytes.reserve(frame.positions.size() * 8);
+  std::string vertices;
+  vertices.reserve(frame.positions.size() * 8);
   for (std::size_t v = 0; v < frame.positions.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c)
-      append(bytes, quantised(frame.positions[v][c], bounds.first[c], bounds.second[c]));
-    append(bytes, frame.values.empty() ? std::uint16_t{0} : quantised_stretch(frame.values[v]));
+    append(vertices, frame.positions[v], bounds);
+    append(vertices, frame.values.empty() ? std::uint16_t{0} : quantised_stretch(frame.values[v]));
   }
-  return to_base64(bytes);
+  std::string inverted;
+  for (const auto& centre : frame.inverted) append(inverted, centre, bounds);
+  return to_base64(vertices) + ' ' + to_base64(inverted);
 }
 
 std::string triangles_text(const Surface& surface) {
@@ -238,7 +271,7 @@ HtmlView html_view(const RunReader& run, const HtmlViewOptions& options) {
   const auto colouring = colouring_of(run, numbers);
   std::vector<ShownFrame> frames;
   for (const auto number : numbers)
-    frames.push_back(shown_frame(run, surface, number, colouring, options.up));
+    frames.push_back(shown_frame(run, mesh, surface, number, colouring, options.up));
 
   const auto bounds = bounds_of(frames);
   std::string frame_lines;
