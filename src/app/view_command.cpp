@@ -18,11 +18,12 @@ struct ViewArguments {
   HtmlViewOptions options;
 };
 
-std::size_t count_from(const std::string& text, const std::string& option) {
+std::size_t count_from(const std::string& text, const std::string& option, std::size_t least) {
   std::size_t count = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (error != std::errc{} || end != text.data() + text.size() || count == 0)
-    throw UserError(option + " must be a whole number of at least 1, not '" + text + "'");
+  if (error != std::errc{} || end != text.data() + text.size() || count < least)
+    throw UserError(option + " must be a whole number of at least " + std::to_string(least) + ", not '" +
+                    text + "'");
   return count;
 }
 
@@ -51,13 +52,19 @@ ViewArguments parsed(std::span<const std::string> arguments) {
     if (i + 1 >= arguments.size()) throw UserError("evert view: " + argument + " needs a value");
     const auto& value = arguments[++i];
     if (option == "-o") view.page = value;
-    if (option == "-frames") view.options.max_frames = count_from(value, option);
-    if (option == "-max_triangles") view.options.max_triangles = count_from(value, option);
+    if (option == "-frames") view.options.max_frames = count_from(value, option, 1);
+    if (option == "-max_triangles") view.options.max_triangles = count_from(value, option, 100);
     if (option == "-up") view.options.up = axis_from(value, option);
   }
   if (view.run.empty()) throw UserError("evert view needs a run file: evert view run.h5");
   if (view.page.empty()) view.page = std::filesystem::path(view.run).replace_extension(".html").string();
   return view;
+}
+
+void require_file(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) throw UserError(path + ": there is no such file");
+  if (std::filesystem::is_directory(path, none)) throw UserError(path + ": is a directory");
 }
 
 /// "torus_puddle/run.h5": most run files have the same name.
@@ -70,6 +77,7 @@ std::string title_of(const std::filesystem::path& run) {
 
 int view_command(std::span<const std::string> arguments, std::ostream& out) {
   auto [run_path, page_path, options] = parsed(arguments);
+  require_file(run_path);
   std::error_code none;
   if (std::filesystem::equivalent(run_path, page_path, none))
     throw UserError("'" + page_path + "' is the run itself: give the page another name with -o");

@@ -262,8 +262,11 @@ HtmlView html_view(const RunReader& run, const HtmlViewOptions& options) {
   const auto mesh = run.mesh();
   require_finite(mesh.nodes, "the mesh of '" + run.path() + "'");
   const auto whole = surface_of(mesh);
+  if (whole.triangles.empty()) throw UserError("'" + run.path() + "' has no cells to show");
   const auto surface = simplified(whole, mesh.nodes, options.max_triangles);
-  if (surface.triangles.empty()) throw UserError("'" + run.path() + "' has no cells to show");
+  if (surface.triangles.empty())
+    throw UserError("nothing of the surface of '" + run.path() + "' is left with at most " +
+                    std::to_string(options.max_triangles) + " triangles: it must be more");
 
   const auto wanted = std::min(run.frames().size(), options.max_frames);
   const auto shown = std::min(wanted, frames_that_fit(surface, options.max_bytes));

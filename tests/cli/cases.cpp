@@ -58,6 +58,38 @@ const std::vector<Case> good_runs{
      .ranks = {1}},
 };
 
+/// `evert view` of what is left of the good scene's run.
+Case bad_view(const std::string& name, const std::string& arguments, const std::vector<std::string>& says,
+              const std::function<void(const fs::path& place)>& spoil = {}) {
+  return {.name = name,
+          .before = "run scene.yaml",
+          .spoil = spoil,
+          .command = "view " + arguments,
+          .files = {scene()},
+          .says = says,
+          .ranks = {1}};
+}
+
+const std::vector<Case> views{
+    {.name = "view",
+     .before = "run scene.yaml",
+     .command = "view out/run.h5 -frames 2",
+     .files = {scene()},
+     .exit_code = 0,
+     .says = {"2 of 3 frames", "out/run.html"}},
+    bad_view("view_nothing", "", {"needs a run file"}),
+    bad_view("view_missing", "nowhere.h5", {"nowhere.h5: there is no such file"}),
+    bad_view("view_directory", "out", {"out: is a directory"}),
+    bad_view("view_no_run", "scene.yaml", {"scene.yaml"}),
+    bad_view("view_checkpoint", "out/checkpoint.h5", {"checkpoint.h5"}),
+    bad_view("view_cut_run", "out/run.h5", {"run.h5"},
+             [](const fs::path& place) { truncate(place / "out/run.h5", 0.6); }),
+    bad_view("view_over_the_run", "out/run.h5 -o out/run.h5", {"is the run itself", "-o"}),
+    bad_view("view_without_frames", "out/run.h5 -frames 0", {"-frames", "at least 1", "'0'"}),
+    bad_view("view_unknown_option", "out/run.h5 -frame 3", {"-frame", "did you mean '-frames'?"}),
+    bad_view("view_unwritable", "out/run.h5 -o scene.yaml/view.html", {"scene.yaml/view.html"}),
+};
+
 const std::vector<Case> bad_commands{
     bad_command("unknown_command", "rum scene.yaml", {"'rum'", "did you mean 'run'?"}),
     bad_command("no_scene", "run", {"scene"}),
@@ -253,7 +285,7 @@ const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
     for (const auto& group :
-         {good_runs, bad_commands, bad_scenes, bad_meshes, cut_meshes(), bad_output, bad_restarts})
+         {good_runs, views, bad_commands, bad_scenes, bad_meshes, cut_meshes(), bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

@@ -315,6 +315,15 @@ TEST(HtmlView, RefusesWhatCannotBeShown) {
             "frame 0 of '" + (scratch / "nan.h5") + "' has a node at nan m, which cannot be shown");
 }
 
+TEST(HtmlView, RefusesToSimplifyToNothing) {
+  const test::Scratch scratch;
+  write_run(test::tet_cube(2), scratch / "run.h5", 1);
+  EXPECT_EQ(
+      test::user_error_of([&] { static_cast<void>(view_of(scratch / "run.h5", {.max_triangles = 1})); }),
+      "nothing of the surface of '" + (scratch / "run.h5") +
+          "' is left with at most 1 triangles: it must be more");
+}
+
 TEST(HtmlView, RefusesAFileThatIsNoRunOrIsCutShort) {
   const test::Scratch scratch;
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(view_of(scratch / "nowhere.h5")); }), "");
