@@ -83,26 +83,42 @@ EVERT_ALWAYS_INLINE Mat3<T> viscous_stress(const Mat3<T>& l, const T& alpha, con
             {s02, s12, two_beta * l(2, 2) + pressure}}}};
 }
 
-/// C v of one batch, per node but the first; `edges` are differences of v.
+/// S of every cell, or |∂X/∂ξ| W P of every point, at the velocities v.
 template <Real T, const auto& element, DampingModel damping>
-EVERT_ALWAYS_INLINE Edges<T, element.nodes> damping_forces(const BlockArrays& block, LocalIndex b,
-                                                           const Edges<T, element.nodes>& edges,
-                                                           const T& alpha, const T& beta) {
-  const CellBatch<T, element> batch(block, b);
-  const DampingState<T, element, damping> state(block, b);
-  if constexpr (keeps_rotated_gradients<element, damping>) {
-    Mat3<T> l = outer(edges[0], state.rotated_gradient(1));
-    for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], state.rotated_gradient(a));
-    const Mat3<T> stress = viscous_stress(l, alpha, beta);
+EVERT_STAGE void damping_stress_stage(const BlockArrays& block, const double* v, double alpha, double beta,
+                                      BatchRange batches, Mat3<T>* stresses) {
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    const DampingState<T, element, damping> state(block, b);
+    const auto edges = batch.edges_of(v);
+    if constexpr (keeps_rotated_gradients<element, damping>) {
+      Mat3<T> l = outer(edges[0], state.rotated_gradient(1));
+      for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], state.rotated_gradient(a));
+      *stresses++ = viscous_stress(l, T(alpha), T(beta));
+    } else {
+      for (std::size_t q = 0; q < batch.points; ++q) {
+        const Mat3<T> frame = state.frame(q);
+        const Mat3<T> rate = transpose_times(frame, batch.field_gradient(edges, q));
+        *stresses++ = batch.volume(q) * (frame * viscous_stress(rate, T(alpha), T(beta)));
+      }
+    }
+  }
+}
+
+/// Adds their forces on the nodes.
+template <Real T, const auto& element, DampingModel damping>
+EVERT_STAGE void damping_force_stage(const BlockArrays& block, BatchRange batches, const Mat3<T>* stresses,
+                                     double* out) {
+  for (LocalIndex b = batches.begin; b < batches.end; ++b, stresses += element.points) {
+    const CellBatch<T, element> batch(block, b);
     Edges<T, element.nodes> forces;
-    for (std::size_t a = 1; a < element.nodes; ++a) forces[a - 1] = stress * state.rotated_gradient(a);
-    return forces;
-  } else {
-    return batch.nodal_sums([&](std::size_t q) {
-      const Mat3<T> frame = state.frame(q);
-      const Mat3<T> rate = transpose_times(frame, batch.field_gradient(edges, q));
-      return batch.volume(q) * (frame * viscous_stress(rate, alpha, beta));
-    });
+    if constexpr (keeps_rotated_gradients<element, damping>) {
+      const DampingState<T, element, damping> state(block, b);
+      for (std::size_t a = 1; a < element.nodes; ++a) forces[a - 1] = *stresses * state.rotated_gradient(a);
+    } else {
+      forces = batch.nodal_sums([&](std::size_t q) { return stresses[q]; });
+    }
+    scatter_balanced<T, element.nodes>(forces, out, batch.nodes);
   }
 }
 
@@ -110,13 +126,12 @@ EVERT_ALWAYS_INLINE Edges<T, element.nodes> damping_forces(const BlockArrays& bl
 template <Real T, const auto& element, DampingModel damping>
 void add_damping(const BlockArrays& block, const Damping& coefficients, double factor, const double* v,
                  double* out, BatchRange batches) {
-  const T alpha = T(factor * coefficients.alpha);
-  const T beta = T(factor * coefficients.beta);
-  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
-    const CellBatch<T, element> batch(block, b);
-    const auto forces = damping_forces<T, element, damping>(block, b, batch.edges_of(v), alpha, beta);
-    scatter_balanced<T, element.nodes>(forces, out, batch.nodes);
-  }
+  typename PointRun<T>::template PerPoint<Mat3<T>> stresses;
+  for_each_piece<T, element>(batches, [&](BatchRange piece) {
+    damping_stress_stage<T, element, damping>(block, v, factor * coefficients.alpha,
+                                              factor * coefficients.beta, piece, stresses.data());
+    damping_force_stage<T, element, damping>(block, piece, stresses.data(), out);
+  });
 }
 
 /// V (β (h hᵀ + |g|² A Aᵀ) + α h hᵀ), h = A g: the diagonal block of the node with gradient g.

@@ -176,9 +176,8 @@ EVERT_ALWAYS_INLINE Edges<T, nodes> gather_edges(const double* values, const Loc
 template <class T, int nodes>
 EVERT_ALWAYS_INLINE void scatter_balanced(const Edges<T, nodes>& of_nodes, double* values,
                                           const LocalIndex* cell_nodes) {
-  NodeRows<T> balance = rows_of_lanes<T>(-of_nodes[0]);
-  add_rows<T>(values, cell_nodes + lanes_v<T>, rows_of_lanes<T>(of_nodes[0]));
-  for (std::size_t a = 2; a < nodes; ++a) {
+  NodeRows<T> balance{};
+  for (std::size_t a = 1; a < nodes; ++a) {
     const NodeRows<T> rows = rows_of_lanes<T>(of_nodes[a - 1]);
     for (std::size_t l = 0; l < lanes_v<T>; ++l) balance[l] = balance[l] - rows[l];
     add_rows<T>(values, cell_nodes + a * lanes_v<T>, rows);

@@ -92,17 +92,24 @@ EVERT_ALWAYS_INLINE void diagonalize(PointRun<T>& run, std::size_t points) {
   plane_stage(run, points);
 }
 
-/// Calls `work(run, batches, points)` for consecutive pieces of `batches`, with F of the piece in the run.
+/// Calls `work(piece)` for consecutive pieces of `batches` that fill a run.
+template <Real T, const auto& element, class Work>
+EVERT_ALWAYS_INLINE void for_each_piece(BatchRange batches, Work&& work) {
+  for (LocalIndex first = batches.begin; first < batches.end; first += batches_per_run<T, element>) {
+    const LocalIndex last = first + batches_per_run<T, element>;
+    work(BatchRange{first, last < batches.end ? last : batches.end});
+  }
+}
+
+/// Calls `work(run, piece, points)` for each of these pieces, with F of its points in the run.
 template <Real T, const auto& element, class Work>
 EVERT_ALWAYS_INLINE void for_each_run(const BlockArrays& block, const double* x, BatchRange batches,
                                       Work&& work) {
   PointRun<T> run;
-  for (LocalIndex first = batches.begin; first < batches.end; first += batches_per_run<T, element>) {
-    const LocalIndex last = first + batches_per_run<T, element>;
-    const BatchRange piece{first, last < batches.end ? last : batches.end};
+  for_each_piece<T, element>(batches, [&](BatchRange piece) {
     gather_field_gradients<T, element>(block, x, piece, run.deformation_gradient.data());
     work(run, piece, static_cast<std::size_t>(piece.end - piece.begin) * element.points);
-  }
+  });
 }
 
 }  // namespace evert::kernels
