@@ -5,11 +5,13 @@
 #include "evert/forces/kernels/cpu_level.hpp"
 #include "evert/forces/kernels/kernel_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -184,13 +186,10 @@ inline std::unique_ptr<ElasticBlock> level_block(const kernels::CpuLevel& level,
                             level.find(body.type, material, damping.model));
 }
 
-/// The levels that this CPU runs.
-inline std::vector<kernels::CpuLevel> supported_levels() {
-  std::vector<kernels::CpuLevel> levels;
-  for (const auto& level : kernels::cpu_levels()) {
-    if (level.supported) levels.push_back(level);
-  }
-  return levels;
+/// The levels that this CPU runs, narrowest first: each contains those before it.
+inline std::span<const kernels::CpuLevel> supported_levels() {
+  const auto all = kernels::cpu_levels();
+  return all.first(static_cast<std::size_t>(std::ranges::count_if(all, &kernels::CpuLevel::supported)));
 }
 
 inline NodalValues forces(ElasticBlock& block, const NodalValues& x) {

@@ -257,7 +257,7 @@ struct ReferenceMesh {
 TEST(StableStep, OfTheReferenceMeshes) {
   const char* folder = std::getenv("EVERT_SHARED_MESHES");
   if (folder == nullptr || !std::filesystem::exists(folder)) {
-    GTEST_SKIP() << "EVERT_SHARED_MESHES names no folder";
+    GTEST_SKIP() << "EVERT_SHARED_MESHES must name the folder of the reference meshes";
   }
   const Lame lame = Lame::from_young_poisson(1e4, 0.3);
   for (const auto& [file, density, true_limit, ratio] :
