@@ -22,7 +22,7 @@ bodies:
   block:
     mesh: {generate: box, min: [-0.1, 0, -0.1], max: [0.1, 0.05, 0.1], cells: [4, 1, 4], cell: tet6}
     density: 1000
-    material: {model: neo_hookean, youngs_modulus: 1.0e6, poissons_ratio: 0.3}
+    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.3}
     damping: {model: rotated, stiffness_proportional: )" +
                            std::to_string(damping_time) + R"(}
 obstacles:
