@@ -42,6 +42,12 @@ struct DampingState {
   EVERT_ALWAYS_INLINE double* vector(std::size_t i) const { return numbers + i * 3 * lanes; }
   /// h_a of node a ≥ 1.
   EVERT_ALWAYS_INLINE Vec3<T> rotated_gradient(std::size_t a) const { return load_vector<T>(vector(a - 1)); }
+  /// L = Σ v_a h_aᵀ = √V Ḟ Qᵀ, from differences of v.
+  EVERT_ALWAYS_INLINE Mat3<T> scaled_rate(const Edges<T, element.nodes>& edges) const {
+    Mat3<T> l = outer(edges[0], rotated_gradient(1));
+    for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], rotated_gradient(a));
+    return l;
+  }
   /// A of point q.
   EVERT_ALWAYS_INLINE Mat3<T> frame(std::size_t q) const {
     return {load_vector<T>(vector(3 * q)), load_vector<T>(vector(3 * q + 1)),
@@ -92,9 +98,7 @@ EVERT_STAGE void damping_stress_stage(const BlockArrays& block, const double* v,
     const DampingState<T, element, damping> state(block, b);
     const auto edges = batch.edges_of(v);
     if constexpr (keeps_rotated_gradients<element, damping>) {
-      Mat3<T> l = outer(edges[0], state.rotated_gradient(1));
-      for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], state.rotated_gradient(a));
-      *stresses++ = viscous_stress(l, T(alpha), T(beta));
+      *stresses++ = viscous_stress(state.scaled_rate(edges), T(alpha), T(beta));
     } else {
       for (std::size_t q = 0; q < batch.points; ++q) {
         const Mat3<T> frame = state.frame(q);

@@ -19,7 +19,7 @@ constexpr ElasticKernels kernels_of() {
       .min_stretch = min_stretch<T, element>,
       .inverted_points = inverted_points<T, element>,
       .stable_step = stable_step<T, element, Model>,
-      .max_strain_rate = max_strain_rate<T, element>,
+      .max_strain_rate = max_strain_rate<T, element, damping>,
   };
   if constexpr (damping != DampingModel::none) {
     table.add_damping = add_damping<T, element, damping>;

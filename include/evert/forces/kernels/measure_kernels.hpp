@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/forces/elastic_block.hpp"
+#include "evert/forces/kernels/damping_kernels.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/forces/kernels/tangent_bound.hpp"
 
@@ -103,21 +104,62 @@ LocalIndex inverted_points(const BlockArrays& block, const double* x, BatchRange
   return count;
 }
 
-/// See ElasticBlock::max_strain_rate: the Frobenius norm of sym(QᵀḞ), whose diagonal in the principal frame
-/// is dσ/dt.
+/// ‖sym A‖².
+template <Real T>
+EVERT_ALWAYS_INLINE T symmetric_square(const Mat3<T>& a) {
+  const Mat3<T> symmetric = T(0.5) * (a + transpose(a));
+  return contract(symmetric, symmetric);
+}
+
+/// ‖sym(QᵀḞ)‖² at every point of the run, Q = U Vᵀ; in the principal frame the diagonal of that is dσ/dt.
 template <Real T, const auto& element>
+EVERT_STAGE void strain_rate_stage(const BlockArrays& block, const double* v, BatchRange batches,
+                                   const PointRun<T>& run, T& fastest_squared) {
+  std::size_t i = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    const auto edges = batch.edges_of(v);
+    for (std::size_t q = 0; q < batch.points; ++q, ++i) {
+      const Mat3<T> turned = transpose_times(polar_rotation(run.left[i], run.plane[i], run.right[i]),
+                                             batch.field_gradient(edges, q));
+      fastest_squared = max(fastest_squared, symmetric_square(turned));
+    }
+  }
+}
+
+/// The same from what the damping operator keeps: of a rotation Q, ‖sym(QᵀḞ)‖ = ‖sym(ḞQᵀ)‖.
+template <Real T, const auto& element>
+EVERT_STAGE void kept_strain_rate_stage(const BlockArrays& block, const double* v, BatchRange batches,
+                                        T& fastest_squared) {
+  constexpr auto rotated = DampingModel::rotated;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    const DampingState<T, element, rotated> state(block, b);
+    const auto edges = batch.edges_of(v);
+    if constexpr (keeps_rotated_gradients<element, rotated>) {
+      const T volume = max(batch.volume(0), T(std::numeric_limits<double>::min()));  // 0 in padding lanes
+      fastest_squared = max(fastest_squared, symmetric_square(state.scaled_rate(edges)) / volume);
+    } else {
+      for (std::size_t q = 0; q < batch.points; ++q)
+        fastest_squared =
+            max(fastest_squared,
+                symmetric_square(transpose_times(state.frame(q), batch.field_gradient(edges, q))));
+    }
+  }
+}
+
+/// See ElasticBlock::max_strain_rate.
+template <Real T, const auto& element, DampingModel damping>
 double max_strain_rate(const BlockArrays& block, const double* x, const double* v, BatchRange batches) {
   T fastest_squared = T(0.0);
-  for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
-    std::array<Mat3<T>, PointRun<T>::capacity> rates;
-    gather_field_gradients<T, element>(block, v, piece, rates.data());
-    diagonalize(run, points);
-    for (std::size_t i = 0; i < points; ++i) {
-      const Mat3<T> rate = transpose_times(polar_rotation(run.left[i], run.plane[i], run.right[i]), rates[i]);
-      const Mat3<T> stretching = T(0.5) * (rate + transpose(rate));
-      fastest_squared = max(fastest_squared, contract(stretching, stretching));
-    }
-  });
+  if constexpr (damping == DampingModel::rotated) {
+    kept_strain_rate_stage<T, element>(block, v, batches, fastest_squared);
+  } else {
+    for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
+      diagonalize(run, points);
+      strain_rate_stage<T, element>(block, v, piece, run, fastest_squared);
+    });
+  }
   return std::sqrt(largest_lane(fastest_squared));
 }
 
@@ -135,19 +177,27 @@ struct BatchSteps {
   T undamped, damped;
 };
 
-/// With κ the tangent bound (at least that at rest, since the state moves on before it is asked again), λ =
-/// λ_e, τ the damping time: 2/√(κλ) without damping; with it the largest Δt with 1 + Δt/2 τλ − Δt²/4 κλ ≥ 0,
-/// but not beyond the limit of the skew part, which has no damping.
+/// The largest Δt for which M + Δt/2 C − Δt²/4 K has no negative direction, with λ = λ_e, τ the damping time,
+/// s, r and κ the bounds of the symmetric part, of the skew part and of the whole tangent (s and κ at least
+/// those at rest, since the state moves on before it is asked again).
+///
+/// Without damping Δt = 2/√(κλ). With it, of a motion with a share c ≤ λ of K_B: 1 + c (Δt τ/2 − Δt² s/4) −
+/// Δt² r λ/4 ≥ 0. Up to Δt = 2τ/s the bracket is positive, the worst motion has c = 0, and spin alone is left
+/// to limit the step; beyond, the worst has c = λ.
 template <Real T>
 EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, const T& rest_stiffness,
                                                const T& time) {
   const T lambda = max(rest_stiffness, T(1e-200));  // 0 in padding lanes
-  const T stiffness = max(bound.total, T(1.0)) * lambda;
-  const T half_damping = T(0.5) * time * lambda;
-  const T damped = T(2.0) * (half_damping + sqrt(half_damping * half_damping + stiffness)) / stiffness;
+  const T undamped = T(2.0) / sqrt(max(bound.total, T(1.0)) * lambda);
+  const T stretching = max(bound.stretching, T(1.0));
   const T spinning = T(2.0) / sqrt(max(bound.spin, T(1e-30)) * lambda);
-  const T undamped = T(2.0) / sqrt(stiffness);
-  return {undamped, max(min(damped, spinning), undamped)};
+  const T half_damping = T(0.5) * time * lambda;
+  const T stiffness = (stretching + bound.spin) * lambda;
+  const T beyond = T(2.0) * (half_damping + sqrt(half_damping * half_damping + stiffness)) / stiffness;
+  const T outweighed = T(2.0) * time / stretching;
+  const T damped = select(beyond > outweighed, beyond, min(outweighed, spinning));
+  const auto finite = bound.total < T(unresolvable);
+  return {undamped, select(finite, max(damped, undamped), undamped)};
 }
 
 /// See ElasticBlock::stable_step.
@@ -171,7 +221,8 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
         const T remaining = min(max(smallest_stretch(run.plane[i]), T(0.0)), T(1.0));
         credited *= remaining * remaining;
       }
-      const BatchSteps<T> steps = stable_steps(tangent_bound(model, sigma), stiffness, credited);
+      const BatchSteps<T> steps =
+          stable_steps(tangent_bound(model, sigma, element.points), stiffness, credited);
       undamped = min(undamped, steps.undamped);
       damped = min(damped, steps.damped);
     }

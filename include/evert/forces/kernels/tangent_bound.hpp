@@ -3,26 +3,33 @@
 #include "evert/math/pack.hpp"
 #include "evert/math/vec3.hpp"
 
+#include <algorithm>
 #include <array>
-#include <utility>
 
 /// How stiff an isotropic material is at a point, against its own stiffness at rest.  PHYSICS 5 and 9
 ///
-/// The tangent ∂P/∂F is compared with B = 2μ I + λ R⊗R, R = U Vᵀ, on all nine components: the smallest s with
-/// ∂P/∂F ⪯ s B. An element's tangent stiffness K_e(x) is then ⪯ s K_B,e, whose largest eigenvalue λ_e does
-/// not depend on R and so is computed once, at rest. For a linear tetrahedron with λ ≥ 0, λ_e is the largest
-/// eigenvalue of the element at rest itself, so that the bound is exact at rest (s = 1) and rigorous
-/// everywhere: λmax(K_e(x)) ≤ s λ_e. Several quadrature points with different R make it an estimate.
+/// In the frames of U and V, ∂P/∂F falls into ∂²ψ/∂σ² on the diagonal, per pair of axes (P_i − P_j)/(σ_i −
+/// σ_j) on the symmetric off-diagonal part, and k = (P_i + P_j)/(σ_i + σ_j) on the skew part, which is what
+/// stress adds against rotation. It is compared with B = 2μ I + λ R⊗R, R = U Vᵀ, whose element stiffness
+/// K_B,e has a largest eigenvalue λ_e that does not depend on R and so is computed once, at rest; for a
+/// linear tetrahedron with λ ≥ 0 it is that of the element at rest itself.
 ///
-/// In the frames of U and V, ∂P/∂F falls into ∂²ψ/∂σ² on the diagonal, and per pair of axes (P_i − P_j)/(σ_i
-/// − σ_j) on the symmetric and (P_i + P_j)/(σ_i + σ_j) on the skew off-diagonal part.
+///   stretching: the smallest s with the symmetric part ⪯ s B, hence K_sym ⪯ s K_B,e
+///   spin:       λmax(K_skew) ≤ k Σ V|∇u|² / u·Mu ≤ k/(2μ + λ) λ_e, since a field u = a φ along its own
+///   gradient
+///               has ‖∇u‖² = (div u)². Several points have several gradients: of the axes a one has a third
+///               of the sum, and 2μ + λ/3 stands in place of 2μ + λ.
+///   total:      λmax(K) / λ_e ≤ stretching + spin, and ≤ max(stretching, k/2μ) since ∂P/∂F ⪯ that B
+///
+/// All are rigorous for one point; several with different R make them an estimate.
 namespace evert::kernels {
 
-/// Both in units of B, ≥ 0: directions in which the tangent is negative need no small step.
+/// All in units of λ_e, ≥ 0: directions in which the tangent is negative need no small step.
 template <class T>
 struct TangentBound {
-  T total;  ///< s
-  T spin;   ///< that of the skew part alone, which damping does not see
+  T stretching;  ///< the symmetric part, which damping sees
+  T spin;        ///< the skew part, which it does not
+  T total;
 };
 
 /// An upper bound of the largest eigenvalue of a symmetric matrix, exact where the other two are equal and at
@@ -70,13 +77,14 @@ inline constexpr double smallest_stretch_sum = 0.2;
 /// Stands for the stiffness of a state that is not finite: it shrinks the step to nothing.
 inline constexpr double unresolvable = 1e200;
 
-/// `model` at the principal stretches `sigma`, in any order. `model.lame` must be positive definite (E > 0).
+/// `model` at the principal stretches `sigma`, in any order, in an element of `points` quadrature points.
+/// `model.lame` must be positive definite (E > 0).
 template <Real T, class Model>
-EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3<T>& sigma) {
+EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3<T>& sigma, int points) {
   const Vec3<T> stress = model.principal_stress(sigma);
   const Mat3<T> derivative = model.stress_derivative(sigma);
   T stretching = max(largest_eigenvalue_bound(relative_to_rest(derivative, model.lame)), T(0.0));
-  T spin = T(0.0);
+  T skew = T(0.0);
   const T in_shear = T(1 / (2 * model.lame.mu));
   for (const auto& [i, j] : std::array<std::array<std::size_t, 2>, 3>{{{0, 1}, {0, 2}, {1, 2}}}) {
     const T difference = sigma[i] - sigma[j];
@@ -84,11 +92,13 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
     const T limit = T(0.5) * (derivative(i, i) + derivative(j, j)) - derivative(i, j);
     const T shear = select(equal, limit, (stress[i] - stress[j]) / select(equal, T(1.0), difference));
     stretching = max(stretching, in_shear * shear);
-    spin = max(spin, in_shear * (stress[i] + stress[j]) / max(sigma[i] + sigma[j], T(smallest_stretch_sum)));
+    skew = max(skew, in_shear * (stress[i] + stress[j]) / max(sigma[i] + sigma[j], T(smallest_stretch_sum)));
   }
-  const T total = max(stretching, spin);
+  const double along_gradient = std::max(model.lame.lambda, 0.0) / (points == 1 ? 1 : 3);
+  const T spin = T(2 * model.lame.mu / (2 * model.lame.mu + along_gradient)) * skew;
+  const T total = min(max(stretching, skew), stretching + spin);
   const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable);
-  return {select(finite, total, T(unresolvable)), spin};
+  return {stretching, spin, select(finite, total, T(unresolvable))};
 }
 
 }  // namespace evert::kernels
