@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace evert {
@@ -118,6 +119,9 @@ void DampingSolver::create_ksp() {
     check(KSPSetUp(with_operator().get()));
   }
   ksp_ = with_operator();
+  check(KSPGetTolerances(ksp_.get(), &rtol_, &atol_, nullptr, nullptr));
+  check(VecDuplicate(residual_.get(), last_.out()));
+  check(VecDuplicate(residual_.get(), image_.out()));
 }
 
 void DampingSolver::print_options(MPI_Comm comm) {
@@ -146,7 +150,8 @@ void DampingSolver::residual(double s, Vec b, const NodeField& v) {
   add_damping(v.vec(), residual_.get(), -s);
 }
 
-int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints) {
+int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,
+                         DampingStart start) {
   const PhaseScope scope(Phase::damping_solve);
   impose(constraints, v.owned());
   v.touched();
@@ -159,7 +164,8 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
   int iterations = 0;
   if (operator_ != nullptr) {
     operator_->set(s, constraints);
-    iterations = correct();
+    if (assembled_ != nullptr) assembled_->assemble();
+    iterations = correct(start);
   } else {
     const VecView right(projected_.get());
     const VecView change(correction_.get());
@@ -173,9 +179,63 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
   return iterations;
 }
 
-/// A correction = projected residual, from zero.
-int DampingSolver::correct() {
-  if (assembled_ != nullptr) assembled_->assemble();
+/// A correction = projected residual.
+int DampingSolver::correct(DampingStart start) {
+  double along = 0;
+  if (start == DampingStart::along_last) along = go_along_last();
+  if (start == DampingStart::unknown) reference_ = 0;
+  const int iterations = iterate();
+  if (along != 0) check(VecAXPY(correction_.get(), along, last_.get()));
+  return iterations;
+}
+
+/// Takes what the last correction d explains off the projected residual r: a d with a = d·r / d·A d, the best
+/// multiple in the norm of A. Returns a. The tolerance stays relative to all of r.
+double DampingSolver::go_along_last() {
+  reference_ = norm_of(projected_.get());
+  std::swap(last_, correction_);
+  {
+    const VecView last(last_.get());
+    project(operator_->constraints(), last.values());
+  }
+  Mat mat = nullptr;
+  check(KSPGetOperators(ksp_.get(), &mat, nullptr));
+  check(MatMult(mat, last_.get(), image_.get()));
+  std::array<PetscScalar, 2> products{};
+  const std::array<Vec, 2> vectors{projected_.get(), image_.get()};
+  check(VecMDot(last_.get(), 2, vectors.data(), products.data()));
+  if (!(products[1] > 0)) return 0;
+  const double along = products[0] / products[1];
+  check(VecAXPY(projected_.get(), -along, image_.get()));
+  return along;
+}
+
+/// As the KSP measures a residual.
+double DampingSolver::norm_of(Vec residual) {
+  KSPNormType type = KSP_NORM_DEFAULT;
+  check(KSPSetUp(ksp_.get()));
+  check(KSPGetNormType(ksp_.get(), &type));
+  PetscReal norm = 0;
+  if (type == KSP_NORM_UNPRECONDITIONED) {
+    check(VecNorm(residual, NORM_2, &norm));
+  } else if (type != KSP_NORM_NONE) {
+    PC pc = nullptr;
+    check(KSPGetPC(ksp_.get(), &pc));
+    check(PCApply(pc, residual, image_.get()));
+    PetscScalar natural = 0;
+    if (type == KSP_NORM_NATURAL)
+      check(VecDot(residual, image_.get(), &natural));
+    else
+      check(VecNorm(image_.get(), NORM_2, &norm));
+    norm = std::max(norm, std::sqrt(std::abs(natural)));
+  }
+  return norm;
+}
+
+/// Conjugate gradients from zero.
+int DampingSolver::iterate() {
+  check(
+      KSPSetTolerances(ksp_.get(), rtol_, std::max(atol_, rtol_ * reference_), PETSC_DEFAULT, PETSC_DEFAULT));
   check(KSPSolve(ksp_.get(), projected_.get(), correction_.get()));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscInt iterations = 0;

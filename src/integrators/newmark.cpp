@@ -105,7 +105,7 @@ int Newmark::correct(System& system, double dt, bool colliding) {
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
   follow_forces(system);
-  return solver_.solve(implicit_, right_.get(), system.v, constraints_);
+  return solver_.solve(implicit_, right_.get(), system.v, constraints_, DampingStart::along_last);
 }
 
 /// The solve held whatever friction may hold. Nodes that pull harder than Coulomb allows slide, and those
@@ -125,7 +125,8 @@ int Newmark::rub(System& system) {
     if (again == 0) break;
     friction = collisions.friction();
     join(prescribed_, collisions.constraints(), constraints_);
-    iterations += solver_.solve(implicit_, rubbed_right_.get(), system.v, constraints_);
+    iterations +=
+        solver_.solve(implicit_, rubbed_right_.get(), system.v, constraints_, DampingStart::refinement);
     reaction = solver_.reaction(implicit_);
   }
   collisions.stop_reversed(system.v.owned());
