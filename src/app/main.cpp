@@ -109,6 +109,7 @@ int main(int argc, char** argv) {
     return done;
   }
   arguments.erase(arguments.begin());
+  evert::use_one_blas_thread();
   const auto help = evert::run_usage();
   if (initialize_petsc(argv[0], petsc_options(command, arguments), help.c_str()) != 0) return bug;
   evert::register_log_events();

@@ -2,6 +2,8 @@
 
 #include "evert/core/error.hpp"
 
+#include <cstdlib>
+#include <dlfcn.h>
 #include <string>
 
 namespace evert {
@@ -23,6 +25,15 @@ void petsc_failed(PetscErrorCode code, const std::source_location& where) {
   throw PetscFailure("PETSc error " + std::to_string(code) + " (" + (text != nullptr ? text : "unknown") +
                      ") in " + where.function_name() + " at " + where.file_name() + ":" +
                      std::to_string(where.line()));
+}
+
+void use_one_blas_thread() {
+  for (const char* chosen : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"})
+    if (std::getenv(chosen) != nullptr) return;
+  // Which BLAS it is shows at run time only: Debian links all programs to an alternative.
+  using SetThreads = void (*)(int);
+  const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  if (set_threads != nullptr) set_threads(1);
 }
 
 void check_options(const std::function<PetscErrorCode()>& calls) {

@@ -1,5 +1,7 @@
 #include "evert/integrators/damping_operator.hpp"
 
+#include "evert/math/nodal.hpp"
+
 #include <algorithm>
 
 namespace evert {
@@ -102,20 +104,29 @@ void DampingOperator::set(double factor, std::span<const NodeConstraint> constra
   check(MatAssemblyEnd(mat_.get(), MAT_FINAL_ASSEMBLY));
 }
 
+/// y = M x + s P C P x in three passes over the nodes: the mass term goes where C adds to, and P is the
+/// identity but at the constrained nodes.
 void DampingOperator::multiply(Vec x, Vec y) const {
   auto in = in_.owned();
   auto out = out_.owned();
   const auto values = read(x, in.size());
   const auto mass = elastic_.masses();
-  std::copy(values.begin(), values.end(), in.begin());
-  std::fill(out.begin(), out.end(), 0.0);
+  for (std::size_t node = 0, i = 0; node < mass.size(); ++node) {
+    for (const std::size_t end = i + 3; i < end; ++i) {
+      in[i] = values[i];
+      out[i] = mass[node] * values[i];
+    }
+  }
   project(constraints_, in);
   in_.touched();
   elastic_.add_damping(in_, out_, factor_);
-  project(constraints_, out);
+  for (const auto& c : constraints_) {
+    const auto inertia = mass[static_cast<std::size_t>(c.node)] * node_value(values, c.node);
+    set_node_value(out, c.node, inertia + c.free * (node_value(out, c.node) - inertia));
+  }
   PetscScalar* result = nullptr;
   check(VecGetArrayWrite(y, &result));
-  for (std::size_t i = 0; i < out.size(); ++i) result[i] = mass[i / 3] * values[i] + out[i];
+  std::copy(out.begin(), out.end(), result);
   check(VecRestoreArrayWrite(y, &result));
   done_reading(x, values);
 }

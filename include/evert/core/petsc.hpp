@@ -24,6 +24,11 @@ inline void check(PetscErrorCode code, const std::source_location& where = std::
     petsc_failed(code, where);
 }
 
+/// Keeps OpenBLAS, if it is the BLAS of this process, to one thread: the ranks are the parallelism, and for
+/// vectors of our length its threads cost many times what they gain. OPENBLAS_NUM_THREADS or OMP_NUM_THREADS
+/// in the environment win. Not collective.
+void use_one_blas_thread();
+
 /// Makes calls that read PETSc options, as collective as they are. A value that PETSc refuses (it cannot be
 /// asked beforehand) becomes a UserError with PETSc's own sentence, in place of its traceback on standard
 /// error; the objects involved are then only good for being destroyed.
