@@ -20,6 +20,11 @@ Vec3d rubbed(const Vec3d& sliding, double coefficient, double normal_change) {
   return change >= speed ? Vec3d{} : (1 - change / speed) * sliding;
 }
 
+/// The impulse that Coulomb allows along the surface; adhesion allows none [N s].
+double most_friction(const Obstacle& obstacle, const Vec3d& normal, const Vec3d& reaction) {
+  return obstacle.friction() * std::max(0.0, dot(reaction, normal));
+}
+
 /// Sliding slower than this share of the velocities involved is rounding.
 constexpr double standstill = 1e-12;
 
@@ -102,28 +107,40 @@ void Collisions::constrain(std::span<const Contact> of_node, Vec3d v) {
   constraints_.push_back(constraint);
 }
 
-bool Collisions::slide(std::span<const double> v, std::span<const double> reaction,
+FrictionError Collisions::friction_error(std::span<const double> v, std::span<const double> reaction) const {
+  FrictionError error;
+  for (const auto& before : contacts_) {
+    const auto exerted = node_value(reaction, before.node);
+    const auto after = after_solve(before, node_value(v, before.node), exerted);
+    const double allowed = most_friction(*before.obstacle, before.normal, exerted);
+    error.allowed += allowed;
+    if (before.sticks) {
+      error.excess += after.sticks ? 0 : norm(along_surface(exerted, before.normal)) - allowed;
+    } else {
+      error.excess += norm(after.friction - before.friction);
+    }
+  }
+  return error;
+}
+
+void Collisions::slide(std::span<const double> v, std::span<const double> reaction,
                        std::span<double> right_side) {
-  bool changed = false;
   constraints_.clear();
   for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
     const auto node = contacts_[begin].node;
     const auto velocity = node_value(v, node);
     for (end = begin; end < contacts_.size() && contacts_[end].node == node; ++end) {
-      changed = rub(contacts_[end], velocity, node_value(reaction, node)) || changed;
+      contacts_[end] = after_solve(contacts_[end], velocity, node_value(reaction, node));
       set_node_value(right_side, node, node_value(right_side, node) + contacts_[end].friction);
     }
     constrain(std::span(contacts_).subspan(begin, end - begin), velocity);
   }
-  return changed;
 }
 
-/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not. Returns whether it
-/// changed.
-bool Collisions::rub(Contact& contact, const Vec3d& velocity, const Vec3d& reaction) {
-  const double allowed = contact.obstacle->friction() * std::max(0.0, dot(reaction, contact.normal));
+/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not.
+Collisions::Contact Collisions::after_solve(Contact contact, const Vec3d& velocity, const Vec3d& reaction) {
+  const double allowed = most_friction(*contact.obstacle, contact.normal, reaction);
   const bool stuck = contact.sticks;
-  const bool rubbed_before = contact.friction != Vec3d{};
   const auto held = along_surface(reaction, contact.normal);
   const auto motion = along_surface(velocity - contact.body_velocity, contact.normal);
   contact.sticks = stuck ? norm(held) <= allowed : dot(motion, contact.sliding) < 0;
@@ -131,7 +148,7 @@ bool Collisions::rub(Contact& contact, const Vec3d& velocity, const Vec3d& react
   const double size = norm(towards);
   contact.sliding = contact.sticks || size == 0 ? Vec3d{} : (1 / size) * towards;
   contact.friction = -allowed * contact.sliding;
-  return contact.sticks != stuck || (!rubbed_before && contact.friction != Vec3d{});
+  return contact;
 }
 
 Vec3d Collisions::friction() const {

@@ -17,6 +17,12 @@ struct StepInterval {
   double dt = 0;   ///< [s]
 };
 
+/// How far a solve is from Coulomb's law: sums over the contacts of a rank [N s].
+struct FrictionError {
+  double excess = 0;   ///< of tangential impulses that are to change
+  double allowed = 0;  ///< the coefficient times the normal impulses
+};
+
 class Collisions {
  public:
   /// `masses` per owned node [kg]; kept by reference, as are the nodal arrays given to the calls below.
@@ -37,12 +43,15 @@ class Collisions {
   /// where friction holds the node.
   [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }
 
-  /// Friction after a solve with constraints(), from its velocities `v` and `reaction` = A v − b per owned
-  /// node [N s]: nodes whose tangential reaction is more than Coulomb allows are let go, those that have
-  /// turned round are held, and `right_side`, b per owned node, gets the impulses of friction on those that
-  /// slide. constraints() then holds for a solve with it. Returns whether that solve is called for: a node
-  /// has changed, or was not rubbed before.
-  bool slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side);
+  /// What slide() would change after a solve with constraints(), from its velocities `v` and `reaction` = A v
+  /// − b per owned node [N s].
+  [[nodiscard]] FrictionError friction_error(std::span<const double> v,
+                                             std::span<const double> reaction) const;
+
+  /// Friction after such a solve: nodes whose tangential reaction is more than Coulomb allows are let go,
+  /// those that have turned round are held, and `right_side`, b per owned node, gets the impulses of friction
+  /// on those that slide. constraints() then holds for a solve with it.
+  void slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side);
 
   /// After the last solve: friction stops a node and never turns it round.
   void stop_reversed(std::span<double> v);
@@ -67,7 +76,7 @@ class Collisions {
   };
   void resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predicted, const StepInterval& step);
   void constrain(std::span<const Contact> of_node, Vec3d v);
-  static bool rub(Contact& contact, const Vec3d& velocity, const Vec3d& reaction);
+  static Contact after_solve(Contact contact, const Vec3d& velocity, const Vec3d& reaction);
 
   std::vector<std::unique_ptr<Obstacle>> obstacles_;
   std::span<const double> masses_;

@@ -91,9 +91,13 @@ TEST(Collisions, ANodeAtRestSticksUntilItPullsTooHard) {
   EXPECT_DOUBLE_EQ(node.x[0], -0.1 * 0.3) << "the position does not creep";
   EXPECT_EQ(node.collisions.constraints().front().free, Mat3d{});
   std::vector<double> right(3, 0.0);
-  EXPECT_FALSE(node.collisions.slide(node.v, std::vector<double>{-0.9, 4, 0}, right));
+  const std::vector<double> within{-0.9, 4, 0}, beyond{-1.1, 4, 0};
+  EXPECT_EQ(node.collisions.friction_error(node.v, within).excess, 0);
+  EXPECT_EQ(node.collisions.friction_error(node.v, within).allowed, 1);
+  node.collisions.slide(node.v, within, right);
   EXPECT_EQ(node.collisions.constraints().front().free, Mat3d{}) << "within Coulomb's cone";
-  EXPECT_TRUE(node.collisions.slide(node.v, std::vector<double>{-1.1, 4, 0}, right));
+  EXPECT_NEAR(node.collisions.friction_error(node.v, beyond).excess, 0.1, 1e-15);
+  node.collisions.slide(node.v, beyond, right);
   EXPECT_NEAR(right[0], -1, 1e-15) << "0.25 of the normal reaction, still against the pull";
   EXPECT_EQ(node.collisions.constraints().front().free(0, 0), 1) << "let go";
 }
@@ -103,11 +107,13 @@ TEST(Collisions, ASlidingNodeIsRubbedWithCoulombsImpulse) {
   node.v = {1, 0, 0};
   node.resolve();
   std::vector<double> right(3, 0.0);
-  EXPECT_TRUE(node.collisions.slide(node.v, std::vector<double>{0, 4, 0}, right));
+  const std::vector<double> pressed{0, 4, 0}, pressed_more{0, 6, 0}, pulled{0, -4, 0};
+  EXPECT_EQ(node.collisions.friction_error(node.v, pressed).excess, 1);
+  node.collisions.slide(node.v, pressed, right);
   EXPECT_NEAR(right[0], -1, 1e-15);
-  right.assign(3, 0.0);
-  EXPECT_FALSE(node.collisions.slide(node.v, std::vector<double>{0, -4, 0}, right))
-      << "adhesion rubs nothing";
+  EXPECT_EQ(node.collisions.friction_error(node.v, pressed).excess, 0);
+  EXPECT_EQ(node.collisions.friction_error(node.v, pressed_more).excess, 0.5);
+  EXPECT_EQ(node.collisions.friction_error(node.v, pulled).allowed, 0) << "adhesion rubs nothing";
 }
 
 TEST(Collisions, FrictionNeverTurnsANodeRound) {
