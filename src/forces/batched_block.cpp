@@ -4,7 +4,6 @@
 #include "evert/elements/reference_element.hpp"
 
 #include "rest_point.hpp"
-#include "rest_stiffness.hpp"
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -48,7 +47,8 @@ BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> res
       damping_(damping),
       density_(cells.density),
       kernels_(kernels),
-      rest_stiffness_(rest_stiffness(element_block_, density_, lame_of(material))),
+      rest_stiffness_(
+          rest_stiffness(element_block_, own_mass_shares(element_block_, density_), lame_of(material))),
       damping_state_(element_block_.cell_of_lane.size() * static_cast<std::size_t>(kernels.damping_numbers),
                      0.0),
       cell_nodes_(cells.nodes.begin(), cells.nodes.end()),
@@ -61,9 +61,10 @@ BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> res
 }
 
 void BatchedBlock::point_kernels_at_memory() {
-  arrays_ = {element_block_.nodes.data(),   element_block_.gradients.data(),
-             element_block_.volumes.data(), element_block_.cell_of_lane.data(),
-             rest_stiffness_.data(),        damping_state_.data()};
+  arrays_ = {element_block_.nodes.data(),    element_block_.gradients.data(),
+             element_block_.volumes.data(),  element_block_.cell_of_lane.data(),
+             rest_stiffness_.largest.data(), rest_stiffness_.spin.data(),
+             damping_state_.data()};
 }
 
 void BatchedBlock::update(const double* x, double* f, BatchRange batches) {
@@ -144,23 +145,24 @@ double BatchedBlock::max_strain_rate(const double* x, const double* v) const {
 void BatchedBlock::set_material(const Material& material, const Damping& damping) {
   EVERT_ASSERT(material.index() == material_.index() && damping.model == damping_.model,
                std::to_string(material.index()) + " for " + std::to_string(material_.index()));
-  const Lame before = lame_of(material_);
-  const Lame after = lame_of(material);
   material_ = material;
   damping_ = damping;
-  if (before.mu > 0 && after.lambda * before.mu == after.mu * before.lambda) {
-    // The same Poisson's ratio: K_e is proportional to the modulus.
-    for (double& lambda : rest_stiffness_) lambda *= after.mu / before.mu;
-  } else {
-    rest_stiffness_ = rest_stiffness(element_block_, density_, after);
-  }
+  set_mass_shares(own_mass_shares(element_block_, density_));
+}
+
+double BatchedBlock::rest_stiffness_of(LocalIndex cell) const {
+  return rest_stiffness_.largest[static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)])];
+}
+
+void BatchedBlock::set_mass_shares(std::span<const double> shares) {
+  rest_stiffness_ = rest_stiffness(element_block_, shares, lame_of(material_));
   point_kernels_at_memory();
 }
 
 std::size_t BatchedBlock::memory() const {
   return bytes(element_block_.nodes) + bytes(element_block_.gradients) + bytes(element_block_.volumes) +
-         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_) + bytes(damping_state_) +
-         bytes(cell_nodes_) + bytes(lane_of_cell_);
+         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) +
+         bytes(damping_state_) + bytes(cell_nodes_) + bytes(lane_of_cell_);
 }
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,

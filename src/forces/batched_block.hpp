@@ -4,6 +4,7 @@
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/elastic_kernels.hpp"
 
+#include "rest_stiffness.hpp"
 #include <vector>
 
 namespace evert {
@@ -31,6 +32,8 @@ class BatchedBlock final : public ElasticBlock {
   [[nodiscard]] LocalIndex inverted_points(const double* x) const override;
   [[nodiscard]] StableStep stable_step(const double* x) const override;
   [[nodiscard]] double max_strain_rate(const double* x, const double* v) const override;
+  [[nodiscard]] double rest_stiffness_of(LocalIndex cell) const override;
+  void set_mass_shares(std::span<const double> shares) override;
   void set_material(const Material& material, const Damping& damping) override;
   [[nodiscard]] std::size_t memory() const override;
 
@@ -43,7 +46,7 @@ class BatchedBlock final : public ElasticBlock {
   Damping damping_;
   double density_;
   kernels::ElasticKernels kernels_;
-  AlignedVector<double> rest_stiffness_;
+  RestStiffness rest_stiffness_;
   AlignedVector<double> damping_state_;
   kernels::BlockArrays arrays_{};         // into the vectors above
   std::vector<LocalIndex> cell_nodes_;    // node_count(type) per cell, in the order given

@@ -3,6 +3,7 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/log.hpp"
 
+#include "mass_shares.hpp"
 #include <algorithm>
 #include <limits>
 
@@ -75,6 +76,7 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   masses_.resize(static_cast<std::size_t>(mesh.owned_nodes));
   for (std::size_t i = 0; i < masses_.size(); ++i) masses_[i] = summed[3 * i];
 
+  balance_masses(mesh_, halo_, masses_, blocks_);
   if (damped_) local_diagonal_.resize(9 * static_cast<std::size_t>(mesh.local_nodes()));
 }
 
@@ -157,6 +159,7 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
   for (std::size_t i = 0; i < blocks_.size(); ++i)
     if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
       blocks_[i]->set_material(properties.material, properties.damping);
+  balance_masses(mesh_, halo_, masses_, blocks_);
 }
 
 std::size_t ElasticForces::memory() const {

@@ -13,11 +13,17 @@
 namespace evert {
 namespace {
 
+struct CellStiffness {
+  double largest, spin;
+};
+
 /// One point: the eigenvalues are those of two 3×3 problems.
 template <int nodes>
-double one_point_stiffness(const RestPoint<nodes>& point, double mass_share, const Lame& lame) {
+CellStiffness one_point_stiffness(const RestPoint<nodes>& point, std::span<const double, nodes> masses,
+                                  const Lame& lame) {
   Mat3d squares{};
-  for (const Vec3d& g : point.gradients) squares += outer(g, g);
+  for (std::size_t a = 0; a < nodes; ++a)
+    squares += (1 / masses[a]) * outer(point.gradients[a], point.gradients[a]);
   const Vec3d gamma = eigen_symmetric3(squares).values;
   Mat3d stretching{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -27,13 +33,13 @@ double one_point_stiffness(const RestPoint<nodes>& point, double mass_share, con
     }
   }
   const double largest = std::max(2 * lame.mu * gamma[2], eigen_symmetric3(stretching).values[2]);
-  return point.volume / mass_share * largest;
+  return {point.volume * largest, point.volume * 2 * lame.mu * std::max(gamma[1], 0.0)};
 }
 
 /// Any number of points: the dense generalised eigenproblem of the cell.
 template <int nodes, int points>
-double dense_stiffness(const std::array<RestPoint<nodes>, points>& at,
-                       const std::array<double, nodes>& masses, const Lame& lame) {
+CellStiffness dense_stiffness(const std::array<RestPoint<nodes>, points>& at,
+                              std::span<const double, nodes> masses, const Lame& lame) {
   Eigen::Matrix<double, 3 * nodes, 3 * nodes> stiffness;
   stiffness.setZero();
   for (const auto& point : at) {
@@ -54,32 +60,59 @@ double dense_stiffness(const std::array<RestPoint<nodes>, points>& at,
     }
   }
   using Solver = Eigen::SelfAdjointEigenSolver<decltype(stiffness)>;
-  return Solver(stiffness, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  const double largest = Solver(stiffness, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  return {largest, largest};
+}
+
+/// All points of the cell in lane number `slot`.
+template <int nodes, int points>
+std::array<RestPoint<nodes>, points> rest_points(const ElementBlock& block, std::size_t slot) {
+  std::array<RestPoint<nodes>, points> at;
+  for (std::size_t q = 0; q < points; ++q) at[q] = rest_point<nodes, points>(block, slot, q);
+  return at;
 }
 
 }  // namespace
 
-AlignedVector<double> rest_stiffness(const ElementBlock& block, double density, const Lame& lame) {
-  return with_reference_element(block.type,
-                                [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
-                                  AlignedVector<double> stiffness(block.cell_of_lane.size(), 0.0);
-                                  for (std::size_t slot = 0; slot < stiffness.size(); ++slot) {
-                                    if (block.cell_of_lane[slot] < 0) continue;
-                                    std::array<RestPoint<nodes>, points> at;
-                                    std::array<double, nodes> masses{};
-                                    for (std::size_t q = 0; q < points; ++q) {
-                                      at[q] = rest_point<nodes, points>(block, slot, q);
-                                      for (std::size_t a = 0; a < nodes; ++a)
-                                        masses[a] += density * at[q].volume * element.values[q][a];
-                                    }
-                                    if constexpr (points == 1) {
-                                      stiffness[slot] = one_point_stiffness(at[0], masses[0], lame);
-                                    } else {
-                                      stiffness[slot] = dense_stiffness<nodes, points>(at, masses, lame);
-                                    }
-                                  }
-                                  return stiffness;
-                                });
+RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares,
+                             const Lame& lame) {
+  const auto slots = block.cell_of_lane.size();
+  RestStiffness stiffness{AlignedVector<double>(slots, 0.0), AlignedVector<double>(slots, 0.0)};
+  with_reference_element(block.type,
+                         [&]<int nodes, int points>(const ReferenceElement<nodes, points>& /*element*/) {
+                           for (std::size_t slot = 0; slot < slots; ++slot) {
+                             if (block.cell_of_lane[slot] < 0) continue;
+                             const auto cell = static_cast<std::size_t>(block.cell_of_lane[slot]);
+                             const auto masses = mass_shares.subspan(nodes * cell).template first<nodes>();
+                             const auto at = rest_points<nodes, points>(block, slot);
+                             CellStiffness of_cell{};
+                             if constexpr (points == 1) {
+                               of_cell = one_point_stiffness<nodes>(at[0], masses, lame);
+                             } else {
+                               of_cell = dense_stiffness<nodes, points>(at, masses, lame);
+                             }
+                             stiffness.largest[slot] = of_cell.largest;
+                             stiffness.spin[slot] = of_cell.spin;
+                           }
+                         });
+  return stiffness;
+}
+
+std::vector<double> own_mass_shares(const ElementBlock& block, double density) {
+  std::vector<double> shares(static_cast<std::size_t>(block.cells) *
+                             static_cast<std::size_t>(node_count(block.type)));
+  with_reference_element(block.type,
+                         [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
+                           for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
+                             if (block.cell_of_lane[slot] < 0) continue;
+                             const auto cell = static_cast<std::size_t>(block.cell_of_lane[slot]);
+                             const auto at = rest_points<nodes, points>(block, slot);
+                             for (std::size_t q = 0; q < points; ++q)
+                               for (std::size_t a = 0; a < nodes; ++a)
+                                 shares[nodes * cell + a] += density * at[q].volume * element.values[q][a];
+                           }
+                         });
+  return shares;
 }
 
 }  // namespace evert

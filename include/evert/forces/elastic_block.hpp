@@ -12,9 +12,9 @@
 /// nodal values, x y z per node, one double of slack behind the last node.
 namespace evert {
 
-/// What bounds the stable time step of a block. With m_e = ρV/4-like element masses, λ is the largest
-/// eigenvalue of K_e against M*_e (PHYSICS 9); a step is stable when 1 + Δt/2·(damping) − Δt²/4·λ ≥ 0 for
-/// every element.
+/// What bounds the stable time step of a block. With M*_e a cell's shares of the masses of its nodes, λ is
+/// the largest eigenvalue of K_e against M*_e (PHYSICS 9); a step is stable when 1 + Δt/2·(damping) − Δt²/4·λ
+/// ≥ 0 for every element.
 struct StableStep {
   double undamped = 0;  ///< [s] largest step with explicit elastic forces and no damping
   double damped = 0;    ///< [s] the same with this block's damping taken implicitly; ≥ undamped
@@ -59,7 +59,15 @@ class ElasticBlock {
   /// of strain in a step.
   [[nodiscard]] virtual double max_strain_rate(const double* x, const double* v) const = 0;
 
-  /// Replaces the parameters (timed events); same model and extension as before. Call update afterwards.
+  /// λ_e [1/s²] of a cell: the largest eigenvalue of its stiffness at rest against its shares of mass.
+  [[nodiscard]] virtual double rest_stiffness_of(LocalIndex cell) const = 0;
+  /// The shares of the masses of its nodes [kg] that each cell is credited with in stable_step, node_count
+  /// per cell; its own masses unless told otherwise. They must sum to the mass of every node, over all
+  /// blocks.
+  virtual void set_mass_shares(std::span<const double> shares) = 0;
+
+  /// Replaces the parameters (timed events); same model and extension as before. Call update afterwards; the
+  /// mass shares are the cells' own again.
   virtual void set_material(const Material& material, const Damping& damping) = 0;
   /// Bytes of element data held.
   [[nodiscard]] virtual std::size_t memory() const = 0;

@@ -49,7 +49,7 @@ class ElasticForces {
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
   [[nodiscard]] const Halo& halo() const { return halo_; }
-  /// Changes the material of every block of `region`. Not collective; call update() afterwards.
+  /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
   /// Bytes of element data on this rank.
   [[nodiscard]] std::size_t memory() const;

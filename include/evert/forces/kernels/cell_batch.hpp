@@ -16,6 +16,7 @@ struct BlockArrays {
   const double* volumes;           ///< [batch][point][lane]
   const LocalIndex* cell_of_lane;  ///< [batch][lane]
   const double* rest_stiffness;    ///< [batch][lane] λ_e of the stable step, see tangent_bound.hpp [1/s²]
+  const double* spin_stiffness;    ///< the same for damped spin, see stable_steps [1/s²]
   double* damping_state;           ///< see damping_kernels.hpp
 };
 

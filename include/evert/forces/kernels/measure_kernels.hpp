@@ -184,13 +184,24 @@ struct BatchSteps {
 /// Without damping Δt = 2/√(κλ). With it, of a motion with a share c ≤ λ of K_B: 1 + c (Δt τ/2 − Δt² s/4) −
 /// Δt² r λ/4 ≥ 0. Up to Δt = 2τ/s the bracket is positive, the worst motion has c = 0, and spin alone is left
 /// to limit the step; beyond, the worst has c = λ.
+///
+/// Damping does not see a spin, and so 2/√(rλ) is that limit. But the fast motion of a flat cell is one node
+/// against its base, never a spin alone: as much of it is strain, which damping sees. With Δt ≤ τ/2k, k the
+/// skew part in units of 2μ, and Δt ≤ τ/s what is left undamped is a spin of the whole base, at k·λ_spin
+/// (`spin_stiffness`, RestStiffness), and half of the limit returned is safe. docs/design/time-stepping.md has
+/// the proof.
 template <Real T>
 EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, const T& rest_stiffness,
-                                               const T& time) {
-  const T lambda = max(rest_stiffness, T(1e-200));  // 0 in padding lanes
+                                               const T& spin_stiffness, const T& time) {
+  const T tiny = T(1e-200);
+  const T lambda = max(rest_stiffness, tiny);  // 0 in padding lanes
   const T undamped = T(2.0) / sqrt(max(bound.total, T(1.0)) * lambda);
   const T stretching = max(bound.stretching, T(1.0));
-  const T spinning = T(2.0) / sqrt(max(bound.spin, T(1e-30)) * lambda);
+  const T skew = max(bound.skew, T(1e-30));
+  const T free_spin = T(2.0) / sqrt(max(bound.spin, T(1e-30)) * lambda);
+  const T damped_spin = min(min(time / skew, T(2.0) * time / stretching),
+                            T(2.0) / sqrt(skew * max(spin_stiffness, tiny)));
+  const T spinning = max(free_spin, damped_spin);
   const T half_damping = T(0.5) * time * lambda;
   const T stiffness = (stretching + bound.spin) * lambda;
   const T beyond = T(2.0) * (half_damping + sqrt(half_damping * half_damping + stiffness)) / stiffness;
@@ -214,6 +225,7 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
     for (std::size_t i = 0; i < points; ++i) {
       const auto batch = static_cast<std::size_t>(piece.begin) + i / element.points;
       const T stiffness = load<T>(block.rest_stiffness + batch * lanes_v<T>);
+      const T spin_stiffness = load<T>(block.spin_stiffness + batch * lanes_v<T>);
       const Vec3<T> sigma = principal_stretches(run.plane[i]);
       T credited = time;
       if (damping.model == DampingModel::objective) {
@@ -221,8 +233,8 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
         const T remaining = min(max(smallest_stretch(run.plane[i]), T(0.0)), T(1.0));
         credited *= remaining * remaining;
       }
-      const BatchSteps<T> steps =
-          stable_steps(tangent_bound(model, sigma, element.points), stiffness, credited);
+      const BatchSteps<T> steps = stable_steps(tangent_bound(model, sigma, element.points), stiffness,
+                                               spin_stiffness, credited);
       undamped = min(undamped, steps.undamped);
       damped = min(damped, steps.damped);
     }

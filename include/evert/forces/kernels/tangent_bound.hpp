@@ -24,12 +24,13 @@
 /// All are rigorous for one point; several with different R make them an estimate.
 namespace evert::kernels {
 
-/// All in units of λ_e, ≥ 0: directions in which the tangent is negative need no small step.
+/// In units of λ_e where not said otherwise; ≥ 0: directions in which the tangent is negative need no small step.
 template <class T>
 struct TangentBound {
   T stretching;  ///< the symmetric part, which damping sees
   T spin;        ///< the skew part, which it does not
   T total;
+  T skew;  ///< the modulus k of the skew part, in units of 2μ
 };
 
 /// An upper bound of the largest eigenvalue of a symmetric matrix, exact where the other two are equal and at
@@ -98,7 +99,7 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
   const T spin = T(2 * model.lame.mu / (2 * model.lame.mu + along_gradient)) * skew;
   const T total = min(max(stretching, skew), stretching + spin);
   const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable);
-  return {stretching, spin, select(finite, total, T(unresolvable))};
+  return {stretching, spin, select(finite, total, T(unresolvable)), skew};
 }
 
 }  // namespace evert::kernels
