@@ -140,7 +140,10 @@ void print_outcome(const RunSummary& summary, const RunFiles& files) {
 int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) {
   const double begin = MPI_Wtime();
   const RunFiles files{arguments.output.empty() ? scene.output.directory : arguments.output};
-  on_root(comm, [&] { require_writable(files("summary.json")); });
+  on_root(comm, [&] {
+    require_writable(files("summary.json"));
+    std::filesystem::remove(files("summary.json"));  // of a run before: must not speak for one that fails
+  });
   auto built = build_scene(comm, scene);
   reject_unused_options(comm, arguments.allow_unknown_options);
   auto& simulation = *built.simulation;

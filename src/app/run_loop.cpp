@@ -13,13 +13,6 @@ volatile std::sig_atomic_t signalled = 0;
 
 void note_signal(int /*signal*/) { signalled = 1; }
 
-/// Ranks get a signal at different times: all stop after the same step.
-bool stop_requested(MPI_Comm comm) {
-  int flag = signalled;
-  MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, MPI_MAX, comm);
-  return flag != 0;
-}
-
 double next_stop(const Simulation& simulation, double end_time,
                  std::span<const std::unique_ptr<Observer>> observers) {
   double stop =
@@ -49,9 +42,11 @@ RunEnd run_loop(Simulation& simulation, double end_time,
   for (const auto& observer : observers) observer->observe(simulation, {});
   auto end = RunEnd::reached_end_time;
   while (simulation.time() < end_time) {
+    // Ranks get a signal at different times: all stop after the same step.
+    if (signalled != 0) simulation.request_stop();
     const auto report = step_towards(simulation, next_stop(simulation, end_time, observers));
     for (const auto& observer : observers) observer->observe(simulation, report);
-    if (stop_requested(simulation.mesh().comm)) {
+    if (report.stop_requested) {
       end = RunEnd::interrupted;
       break;
     }

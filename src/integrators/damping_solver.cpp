@@ -241,6 +241,10 @@ int DampingSolver::iterate() {
   PetscInt iterations = 0;
   check(KSPGetConvergedReason(ksp_.get(), &reason));
   check(KSPGetIterationNumber(ksp_.get(), &iterations));
+  if (reason == KSP_DIVERGED_NANORINF)
+    throw SimulationError(
+        "the damping solve met a force or a coefficient that is not finite (DIVERGED_NANORINF); a smaller "
+        "integrator.time_step or softer materials may help");
   if (reason < 0)
     throw SimulationError(
         "the damping solve did not converge (" + std::string(KSPConvergedReasons[reason]) + " after " +

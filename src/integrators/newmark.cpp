@@ -42,7 +42,7 @@ Newmark::Newmark(const System& system) : solver_(system.mesh, system.elastic), p
 }
 
 StepReport Newmark::advance(System& system, double dt) {
-  StepReport report{dt, 0, 0};
+  StepReport report{.dt = dt};
   report.cg_iterations = predict(system, dt);
   const auto held = collide(system, dt);
   report.cg_iterations += correct(system, dt, held.colliding);

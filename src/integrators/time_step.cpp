@@ -1,9 +1,7 @@
 #include "evert/integrators/time_step.hpp"
 
-#include "evert/core/error.hpp"
-
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace evert {
@@ -28,12 +26,7 @@ double TimeStepControl::suggest(System& system) {
     const auto bound = system.elastic.stable_step(system.x);
     limits[1] = std::max(bound.undamped, bound.damped / 2);
   }
-  const bool finite = !std::isnan(rate) && !std::isnan(limits[1]);
-  if (!finite) limits = {-1.0, -1.0};
   MPI_Allreduce(MPI_IN_PLACE, limits.data(), 2, MPI_DOUBLE, MPI_MIN, system.mesh.comm);
-  if (limits[0] < 0)
-    throw SimulationError("the state is no longer finite at t = " + std::to_string(system.time) +
-                          " s; a smaller integrator.time_step or integrator.safety may help");
   stable_ = limits[1];
   age_ = estimate ? 1 : age_ + 1;
   return std::min(limits[0], options_.safety * stable_);

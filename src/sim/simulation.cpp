@@ -6,11 +6,30 @@
 #include "evert/math/nodal.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace evert {
 namespace {
+
+constexpr double light_speed = 299792458;  // [m/s]
+
+/// True where every |value| is at most `limit` and none is NaN. The bits of a magnitude are ordered as the
+/// magnitude, infinity and NaN above all: integers alone, so that this runs at the speed of memory.
+bool all_within(std::span<const double> values, double limit) {
+  constexpr auto sign = std::uint64_t{1} << 63U;
+  const auto highest = std::bit_cast<std::uint64_t>(limit);
+  std::uint64_t below_zero = 0;
+  for (const double value : values) below_zero |= highest - (std::bit_cast<std::uint64_t>(value) & ~sign);
+  return (below_zero & sign) == 0;
+}
+
+/// A velocity of which components grow without bound is noticed long before it overflows; positions follow.
+bool sound(std::span<const double> positions, std::span<const double> velocities) {
+  return all_within(positions, std::numeric_limits<double>::max()) && all_within(velocities, light_speed);
+}
 
 void set_owned(NodeField& field, std::span<const Vec3d> values) {
   for (std::size_t node = 0; node < values.size(); ++node)
@@ -61,18 +80,60 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
   forces_stale_ = true;
   apply_due_events();
   refresh_forces();
+  agree_on_state();
 }
 
 StepReport Simulation::step(double dt) { return step_to(system_.time + dt); }
 
 StepReport Simulation::step_to(double end_time) {
   const double dt = end_time - system_.time;
+  if (!(dt > 0))
+    throw SimulationError("at " + moment() + ": no time step is short enough for the state" + advice());
   apply_due_events();
   refresh_forces();
-  const auto report = integrator_.advance(system_, dt);
+  auto report = advance(dt);
   system_.time = end_time;
   ++steps_;
+  report.stop_requested = agree_on_state();
   return report;
+}
+
+StepReport Simulation::advance(double dt) {
+  try {
+    return integrator_.advance(system_, dt);
+  } catch (const SimulationError& error) {  // of a solve, on all ranks; it knows no time
+    throw SimulationError("at " + moment() + ": " + error.what());
+  }
+}
+
+bool Simulation::agree_on_state() {
+  const auto x = system_.x.owned();
+  const auto v = system_.v.owned();
+  std::array<GlobalIndex, 2> counts{0, stop_requested_ ? 1 : 0};
+  if (!sound(x, v))
+    for (std::size_t i = 0; i < x.size(); i += 3)
+      counts[0] += sound(x.subspan(i, 3), v.subspan(i, 3)) ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), 2, MPI_INT64_T, MPI_SUM, mesh_.comm);
+  if (counts[0] > 0)
+    throw SimulationError("at " + moment() + ": the motion has blown up, " + std::to_string(counts[0]) +
+                          " of " + std::to_string(mesh_.total_nodes) +
+                          " nodes are faster than light or not finite" + (steps_ > 0 ? advice() : ""));
+  return counts[1] > 0;
+}
+
+std::string Simulation::moment() const {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "t = %.6g s, step %lld", system_.time,
+                static_cast<long long>(steps_));
+  return text.data();
+}
+
+std::string Simulation::advice() const {
+  if (!(fixed_time_step_ > 0)) return "; a smaller integrator.safety or max_strain_increment may help";
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "; an integrator.time_step below %.6g s, or auto, may help",
+                fixed_time_step_);
+  return text.data();
 }
 
 double Simulation::suggested_time_step() {
@@ -194,6 +255,7 @@ void Simulation::restore(std::span<const double> positions, std::span<const doub
   while (events_done_ < std::min(events_done, events_.size())) events_[events_done_++].apply(*this);
   refresh_forces();
   time_step_.restore(control);  // after the events, which reset it
+  agree_on_state();
 }
 
 }  // namespace evert

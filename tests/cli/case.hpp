@@ -28,6 +28,7 @@ struct Case {
   int exit_code = 2;
   std::vector<std::string> says{};  ///< all in the one line on standard error; with exit code 0 in the output
   std::vector<int> ranks{1, 3};
+  std::function<void(const std::filesystem::path& place)> inspect{};  ///< what it must have left behind
 };
 
 /// Every case there is.

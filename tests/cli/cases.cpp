@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include "case.hpp"
 #include <fstream>
 
@@ -216,6 +218,54 @@ const std::vector<Case> bad_meshes{
     bad_mesh("medit_without_cells", medit({{"Tetrahedra\n6", "Tetrahedra\n0"}}), {"cube.mesh"}),
 };
 
+/// Only sound states are in what a run that failed leaves behind: rows and frames from before.
+void expect_sound_output(const fs::path& place) {
+  std::ifstream log(place / "out/energy.csv");
+  int rows = 0;
+  for (std::string row; std::getline(log, row); ++rows)
+    EXPECT_TRUE(row.find("nan") == std::string::npos && row.find("inf") == std::string::npos) << row;
+  EXPECT_GT(rows, 2) << "a header, the start, and what was still sound";
+  EXPECT_TRUE(fs::exists(place / "out/checkpoint.h5"));
+  EXPECT_FALSE(fs::exists(place / "out/summary.json")) << "of the run before";
+}
+
+Case failing(const std::string& name, const std::vector<Edit>& edits, const std::vector<std::string>& says) {
+  return {.name = name, .files = {scene(edits)}, .exit_code = 3, .says = says};
+}
+
+const std::vector<Case> failures{
+    // Steps far beyond the stable one.
+    {.name = "blows_up_undamped",
+     .before = "run scene.yaml",
+     .command =
+         "run scene.yaml -set end_time=100 -set integrator.time_step=0.2 "
+         "-set output.frames_per_second=5 -set output.energy_log=0 -set checkpoint.every_simulated=0.2",
+     .files = {scene({{"    damping: {model: rotated, stiffness_proportional: 0.01}\n", ""},
+                      {"petsc: {damping_ksp_rtol: 1e-6}\n", ""},
+                      {"gravity: [0, -9.81, 0]", "gravity: [0, 0, 0]"},
+                      {"density: 1000", "density: 1000\n    spin: [1, 2, 3]"}})},
+     .exit_code = 3,
+     .says = {"the simulation failed: at t = ", "blown up", "integrator.time_step below 0.2 s"},
+     .inspect = expect_sound_output},
+    {.name = "blows_up_damped",
+     .command = "run scene.yaml -set end_time=100 -set output.frames_per_second=2 -set gravity=[0,0,0] "
+                "-set integrator.time_step=0.5 "
+                "-set bodies.cube.spin=[1,2,3] -set bodies.cube.material.youngs_modulus=1e9 "
+                "-set bodies.cube.damping.stiffness_proportional=1e-6",
+     .files = {scene()},
+     .exit_code = 3,
+     .says = {"the simulation failed: at t = ", "integrator.time_step"}},
+    failing("overflowing_stiffness", {{"youngs_modulus: 1e5", "youngs_modulus: 1e300"}},
+            {"at t = 0 s", "DIVERGED_NANORINF"}),
+    failing("faster_than_light", {{"density: 1000", "density: 1000\n    velocity: [1e9, 0, 0]"}},
+            {"at t = 0 s", "27 of 27 nodes", "faster than light"}),
+    {.name = "too_few_iterations",
+     .command = "run scene.yaml -damping_ksp_max_it 1 -set bodies.cube.spin=[1,2,3]",
+     .files = {scene()},
+     .exit_code = 3,
+     .says = {"at t = 0 s", "DIVERGED_ITS", "-damping_ksp_max_it"}},
+};
+
 const std::vector<Case> bad_output{
     {.name = "output_below_a_file",
      .command = "run scene.yaml -set output.directory=plain/out",
@@ -284,8 +334,8 @@ std::vector<Case> cut_meshes() {
 const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
-    for (const auto& group :
-         {good_runs, views, bad_commands, bad_scenes, bad_meshes, cut_meshes(), bad_output, bad_restarts})
+    for (const auto& group : {good_runs, views, bad_commands, bad_scenes, bad_meshes, cut_meshes(), failures,
+                              bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

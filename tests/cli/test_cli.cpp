@@ -99,6 +99,7 @@ TEST_P(Cli, Ends) {
     EXPECT_TRUE(outcome.errors[0].starts_with("evert: "));
     expect_says(outcome.errors[0], what_.says);
   }
+  if (what_.inspect) what_.inspect(place_);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Cli, testing::ValuesIn(all_runs()),

@@ -10,9 +10,10 @@ namespace evert {
 
 /// What one step did.
 struct StepReport {
-  double dt = 0;            ///< [s]
-  int cg_iterations = 0;    ///< over the damping solves of the step
-  LocalIndex contacts = 0;  ///< colliding owned nodes on this rank
+  double dt = 0;                ///< [s]
+  int cg_iterations = 0;        ///< over the damping solves of the step
+  LocalIndex contacts = 0;      ///< colliding owned nodes on this rank
+  bool stop_requested = false;  ///< some rank wants the run to end here
 };
 
 /// Newmark's scheme with elastic forces explicit and damping forces implicit; second order, variable step.

@@ -15,8 +15,8 @@ class TimeStepControl {
  public:
   explicit TimeStepControl(const TimeStepOptions& options) : options_(options) {}
 
-  /// Collective. The step to make now [s]; infinity when neither stiffness nor motion limits it.
-  /// Throws SimulationError when the state is not finite.
+  /// Collective. The step to make now [s]; infinity when neither stiffness nor motion limits it, and next to
+  /// nothing where the stresses of the state overflow.
   [[nodiscard]] double suggest(System& system);
 
   /// Forget the last estimate (a material has changed).

@@ -36,8 +36,9 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by `dt` > 0 [s]. Throws SimulationError when a value is not finite or a solve does not
-  /// converge.
+  /// Advances by `dt` [s]. Throws SimulationError, on all ranks and with the time in it, when a solve does
+  /// not converge, when afterwards a position is not finite or a velocity not below that of light, and when
+  /// `dt` is lost in the rounding of the time. The state is then that of a broken step: good for nothing.
   StepReport step(double dt);
   /// The same to exactly `end_time` [s], in one step.
   StepReport step_to(double end_time);
@@ -45,6 +46,10 @@ class Simulation {
   [[nodiscard]] double suggested_time_step();
   /// The time of the next event [s], or infinity. Not collective.
   [[nodiscard]] double next_event() const;
+
+  /// Not collective: any rank may ask. StepReport::stop_requested of the next step tells all of them; the
+  /// wish travels with what each step reduces anyway.
+  void request_stop() { stop_requested_ = true; }
 
   // Not collective:
   [[nodiscard]] const DistributedMesh& mesh() const { return mesh_; }
@@ -78,6 +83,13 @@ class Simulation {
  private:
   void apply_due_events();
   void refresh_forces();
+  StepReport advance(double dt);
+  /// True when any rank has called request_stop. Throws SimulationError when any rank's state is not sound.
+  bool agree_on_state();
+  /// "t = 0.1 s, step 12", for messages.
+  [[nodiscard]] std::string moment() const;
+  /// "; ... may help".
+  [[nodiscard]] std::string advice() const;
 
   DistributedMesh mesh_;
   ElasticForces elastic_;
@@ -91,6 +103,7 @@ class Simulation {
   std::size_t events_done_ = 0;
   std::int64_t steps_ = 0;
   bool forces_stale_ = false;
+  bool stop_requested_ = false;
   System::Impulses impulses_before_{};  // of all ranks, before a restart
 };
 

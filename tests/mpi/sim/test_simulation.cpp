@@ -1,0 +1,80 @@
+#include "evert/core/collective.hpp"
+#include "evert/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.hpp"
+#include <cmath>
+
+/// What a step promises: that all ranks learn what one of them knows.
+namespace evert {
+namespace {
+
+constexpr auto scene = R"(
+name: free
+end_time: 1
+bodies:
+  cube:
+    mesh: {generate: box, size: [1, 1, 1], cells: [4, 2, 2], cell: tet6}
+    density: 1000
+    material: {model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.3}
+integrator: {time_step: 1e-3}
+)";
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+bool on_last_rank() { return rank_of(PETSC_COMM_WORLD) + 1 == size_of(PETSC_COMM_WORLD); }
+
+std::string simulation_error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const SimulationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// One component of the last node of the last rank becomes `value`; everything else stays.
+std::string error_of_state(Simulation& simulation, bool position, double value) {
+  const auto x = simulation.positions().owned();
+  const auto v = simulation.velocities().owned();
+  std::vector<double> positions(x.begin(), x.end());
+  std::vector<double> velocities(v.begin(), v.end());
+  if (on_last_rank()) (position ? positions : velocities).back() = value;
+  return simulation_error_of([&] { simulation.restore(positions, velocities, simulation.state_scalars()); });
+}
+
+TEST(Simulation, AllRanksLearnOfOneNodeThatIsNotFinite) {
+  for (const bool position : {true, false})
+    for (const double value : {nan, -nan, infinity, -infinity}) {
+      const auto built = test::build(scene);
+      const auto error = error_of_state(*built.simulation, position, value);
+      EXPECT_NE(error.find("1 of 45 nodes"), std::string::npos) << error;
+    }
+}
+
+TEST(Simulation, NoNodeIsFasterThanLight) {
+  const auto built = test::build(scene);
+  EXPECT_EQ(error_of_state(*built.simulation, false, -299792458.0), "");
+  EXPECT_NE(error_of_state(*built.simulation, false, -299792459.0), "");
+}
+
+TEST(Simulation, StopsWhereTheStepIsLostInTheTime) {
+  const auto built = test::build(scene);
+  built.simulation->step(1e-3);
+  for (const double dt : {1e-30, 0.0, -1e-3, nan}) {
+    const auto error = simulation_error_of([&] { built.simulation->step(dt); });
+    EXPECT_NE(error.find("t = 0.001 s, step 1"), std::string::npos) << dt << ": " << error;
+  }
+}
+
+TEST(Simulation, AllRanksLearnThatOneWantsToStop) {
+  const auto built = test::build(scene);
+  EXPECT_FALSE(built.simulation->step(1e-3).stop_requested);
+  if (on_last_rank()) built.simulation->request_stop();
+  EXPECT_TRUE(built.simulation->step(1e-3).stop_requested);
+}
+
+}  // namespace
+}  // namespace evert
