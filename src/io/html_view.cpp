@@ -1,10 +1,10 @@
 #include "evert/io/html_view.hpp"
 
 #include "evert/core/error.hpp"
+#include "evert/io/json_text.hpp"
 #include "evert/io/surface.hpp"
 
 #include "../mesh/base64.hpp"
-#include "json_text.hpp"
 #include "number_text.hpp"
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "json_text.hpp"
+#include "evert/io/json_text.hpp"
 
 #include "number_text.hpp"
 #include <cmath>

@@ -4,11 +4,11 @@
 #include "evert/core/log.hpp"
 #include "evert/core/version.hpp"
 #include "evert/io/files.hpp"
+#include "evert/io/json_text.hpp"
 
 #include <hdf5.h>
 #include <petscsys.h>
 
-#include "json_text.hpp"
 #include <array>
 #include <sys/resource.h>
 #include <vector>

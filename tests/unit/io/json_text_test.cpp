@@ -1,4 +1,4 @@
-#include "json_text.hpp"
+#include "evert/io/json_text.hpp"
 
 #include <gtest/gtest.h>
 
