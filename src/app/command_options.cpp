@@ -1,4 +1,4 @@
-#include "mesh_options.hpp"
+#include "command_options.hpp"
 
 #include "evert/core/error.hpp"
 
@@ -27,10 +27,10 @@ bool is_finite(int /*value*/) { return true; }
 
 }  // namespace
 
-MeshOptions::MeshOptions(std::string command, std::span<const std::string> arguments,
-                         std::vector<std::string> with_value, const std::vector<std::string>& switches,
-                         const std::vector<std::string>& files)
-    : command_("evert mesh " + std::move(command)) {
+CommandOptions::CommandOptions(std::string command, std::span<const std::string> arguments,
+                               std::vector<std::string> with_value, const std::vector<std::string>& switches,
+                               const std::vector<std::string>& files)
+    : command_(std::move(command)) {
   auto known = with_value;
   known.insert(known.end(), switches.begin(), switches.end());
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -54,15 +54,15 @@ MeshOptions::MeshOptions(std::string command, std::span<const std::string> argum
   if (files_.size() < files.size()) throw UserError(command_ + " needs " + files[files_.size()]);
 }
 
-std::string MeshOptions::text(const std::string& option) const {
+std::string CommandOptions::text(const std::string& option) const {
   const auto found = values_.find(option);
   if (found == values_.end()) throw UserError(command_ + " needs -" + option);
   return found->second;
 }
 
 template <class Number>
-std::vector<Number> MeshOptions::numbers(const std::string& option, std::size_t count,
-                                         const char* kind) const {
+std::vector<Number> CommandOptions::numbers(const std::string& option, std::size_t count,
+                                            const char* kind) const {
   const auto value = text(option);
   std::vector<Number> result;
   const char* at = value.data();
@@ -80,20 +80,20 @@ std::vector<Number> MeshOptions::numbers(const std::string& option, std::size_t 
   return result;
 }
 
-double MeshOptions::number(const std::string& option) const {
+double CommandOptions::number(const std::string& option) const {
   return numbers<double>(option, 1, "a finite number").front();
 }
 
-int MeshOptions::whole_number(const std::string& option) const {
+int CommandOptions::whole_number(const std::string& option) const {
   return numbers<int>(option, 1, "a whole number").front();
 }
 
-Vec3d MeshOptions::three_numbers(const std::string& option) const {
+Vec3d CommandOptions::three_numbers(const std::string& option) const {
   const auto values = numbers<double>(option, 3, "three finite numbers like 1,0.5,2");
   return {values[0], values[1], values[2]};
 }
 
-std::array<int, 3> MeshOptions::three_whole_numbers(const std::string& option) const {
+std::array<int, 3> CommandOptions::three_whole_numbers(const std::string& option) const {
   const auto values = numbers<int>(option, 3, "three whole numbers like 10,5,5");
   return {values[0], values[1], values[2]};
 }

@@ -9,15 +9,16 @@
 
 namespace evert {
 
-/// The options and the other arguments of one `evert mesh` command. Options may be written with one dash or
-/// two.
-class MeshOptions {
+/// The options and the other arguments of one command such as `evert mesh convert`. Options may be written
+/// with one dash or two.
+class CommandOptions {
  public:
-  /// `with_value`, `switches`: all option names without dashes; `files`: what the other arguments are called,
-  /// all needed. Throws UserError for anything else on the command line.
-  MeshOptions(std::string command, std::span<const std::string> arguments,
-              std::vector<std::string> with_value, const std::vector<std::string>& switches,
-              const std::vector<std::string>& files);
+  /// `command`: as the user calls it, "evert mesh convert". `with_value`, `switches`: all option names
+  /// without dashes; `files`: what the other arguments are called, all needed. Throws UserError for anything
+  /// else on the command line.
+  CommandOptions(std::string command, std::span<const std::string> arguments,
+                 std::vector<std::string> with_value, const std::vector<std::string>& switches,
+                 const std::vector<std::string>& files);
 
   [[nodiscard]] const std::string& file(std::size_t i) const { return files_[i]; }
   [[nodiscard]] bool has(const std::string& option) const { return values_.contains(option); }

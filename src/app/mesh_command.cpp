@@ -8,7 +8,7 @@
 #include "evert/mesh/quality.hpp"
 #include "evert/mesh/repair.hpp"
 
-#include "mesh_options.hpp"
+#include "command_options.hpp"
 #include "mesh_shapes.hpp"
 #include <algorithm>
 #include <fstream>
@@ -60,8 +60,8 @@ int generate_command(std::span<const std::string> arguments, std::ostream& out) 
 }
 
 int convert_command(std::span<const std::string> arguments, std::ostream& out) {
-  const MeshOptions options("convert", arguments, {}, {"reorient", "drop_unused", "gmsh22"},
-                            {"a mesh to read", "a file to write"});
+  const CommandOptions options("evert mesh convert", arguments, {}, {"reorient", "drop_unused", "gmsh22"},
+                               {"a mesh to read", "a file to write"});
   auto format = mesh_format_of(options.file(1));
   if (options.has("gmsh22")) {
     if (format != MeshFormat::gmsh41) throw UserError("evert mesh convert: -gmsh22 is for .msh files only");
@@ -75,7 +75,7 @@ int convert_command(std::span<const std::string> arguments, std::ostream& out) {
 }
 
 int quality_command(std::span<const std::string> arguments, std::ostream& out) {
-  const MeshOptions options("quality", arguments, {"json"}, {}, {"a mesh to read"});
+  const CommandOptions options("evert mesh quality", arguments, {"json"}, {}, {"a mesh to read"});
   const auto quality = measure_quality(read_mesh(options.file(0)));
   write_quality_text(quality, out);
   if (!options.has("json")) return 0;
@@ -99,7 +99,7 @@ void write_partition(const PartitionQuality& quality, std::ostream& out) {
 }
 
 int partition_command(std::span<const std::string> arguments, std::ostream& out) {
-  const MeshOptions options("partition", arguments, {"ranks", "o"}, {}, {"a mesh to read"});
+  const CommandOptions options("evert mesh partition", arguments, {"ranks", "o"}, {}, {"a mesh to read"});
   const int ranks = options.whole_number("ranks");
   if (ranks < 1)
     throw UserError("evert mesh partition: -ranks must be at least 1, not " + std::to_string(ranks));

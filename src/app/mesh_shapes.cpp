@@ -3,7 +3,7 @@
 #include "evert/core/error.hpp"
 #include "evert/mesh/generators.hpp"
 
-#include "mesh_options.hpp"
+#include "command_options.hpp"
 #include <functional>
 #include <map>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 struct Shape {
   std::string name;
   std::vector<std::string> options;
-  std::function<Mesh(const MeshOptions&)> make;
+  std::function<Mesh(const CommandOptions&)> make;
 };
 
 BoxCells box_cells(const std::string& name) {
@@ -31,7 +31,7 @@ BoxCells box_cells(const std::string& name) {
                   did_you_mean(name, names));
 }
 
-Mesh make_box(const MeshOptions& options) {
+Mesh make_box(const CommandOptions& options) {
   const auto cells = options.has("cell") ? box_cells(options.text("cell")) : BoxCells::bcc;
   if (options.has("cells") == options.has("edge_length"))
     throw UserError("evert mesh generate box needs either -edge_length or -cells");
@@ -42,9 +42,9 @@ Mesh make_box(const MeshOptions& options) {
 
 /// A shape filled by stuffing: all take -edge_length.
 Shape implicit(std::string name, std::vector<std::string> options,
-               std::function<ImplicitShape(const MeshOptions&)> shape) {
+               std::function<ImplicitShape(const CommandOptions&)> shape) {
   options.emplace_back("edge_length");
-  return {std::move(name), std::move(options), [shape = std::move(shape)](const MeshOptions& values) {
+  return {std::move(name), std::move(options), [shape = std::move(shape)](const CommandOptions& values) {
             return generate(shape(values), values.number("edge_length"));
           }};
 }
@@ -52,16 +52,16 @@ Shape implicit(std::string name, std::vector<std::string> options,
 const std::vector<Shape>& shapes() {
   static const std::vector<Shape> table{
       {"box", {"size", "edge_length", "cells", "cell"}, make_box},
-      implicit("ball", {"radius"}, [](const MeshOptions& o) { return ball(o.number("radius")); }),
+      implicit("ball", {"radius"}, [](const CommandOptions& o) { return ball(o.number("radius")); }),
       implicit(
           "torus", {"major_radius", "minor_radius"},
-          [](const MeshOptions& o) { return torus(o.number("major_radius"), o.number("minor_radius")); }),
+          [](const CommandOptions& o) { return torus(o.number("major_radius"), o.number("minor_radius")); }),
       implicit("cylinder", {"radius", "length"},
-               [](const MeshOptions& o) { return cylinder(o.number("radius"), o.number("length")); }),
+               [](const CommandOptions& o) { return cylinder(o.number("radius"), o.number("length")); }),
       implicit("capsule", {"radius", "length"},
-               [](const MeshOptions& o) { return capsule(o.number("radius"), o.number("length")); }),
+               [](const CommandOptions& o) { return capsule(o.number("radius"), o.number("length")); }),
       implicit("ellipsoid", {"radii"},
-               [](const MeshOptions& o) { return ellipsoid(o.three_numbers("radii")); }),
+               [](const CommandOptions& o) { return ellipsoid(o.three_numbers("radii")); }),
   };
   return table;
 }
@@ -77,7 +77,8 @@ GenerateRequest generate_mesh(std::span<const std::string> arguments) {
     if (shape.name != arguments.front()) continue;
     auto with_value = shape.options;
     with_value.emplace_back("o");
-    const MeshOptions options("generate " + shape.name, arguments.subspan(1), with_value, {}, {});
+    const CommandOptions options("evert mesh generate " + shape.name, arguments.subspan(1), with_value, {},
+                                 {});
     auto output = options.text("o");
     const auto format = mesh_format_of(output);  // before the work
     return {shape.make(options), std::move(output), format};
