@@ -67,6 +67,7 @@ std::string usage() {
   evert explain [key]                                     the scene reference
   evert mesh generate|convert|quality|partition           make and examine meshes
   evert view run.h5                                       a web page that plays the frames of a run
+  evert bench kernels                                     how fast the kernels are on this machine
   evert run -help                                         every option of a run
   evert --version
 

@@ -1,4 +1,5 @@
 // The program: hands each subcommand its arguments, and turns what it throws into one line and an exit code.
+#include "evert/app/bench_command.hpp"
 #include "evert/app/check_command.hpp"
 #include "evert/app/command_line.hpp"
 #include "evert/app/explain_command.hpp"
@@ -50,9 +51,10 @@ int dispatch(const std::string& command, const Arguments& arguments) {
       {"view", [](const Arguments& rest) { return evert::view_command(rest, std::cout); }},
   };
   if (command == "run") return evert::run_command(MPI_COMM_WORLD, evert::parse_run_arguments(arguments));
+  if (command == "bench") return evert::bench_command(MPI_COMM_WORLD, arguments, std::cout);
   if (const auto found = serial.find(command); found != serial.end())
     return on_rank_zero(found->second, arguments);
-  std::vector<std::string> names{"run"};
+  std::vector<std::string> names{"run", "bench"};
   for (const auto& [name, function] : serial) names.push_back(name);
   throw evert::UserError("there is no command '" + command + "': must be " + evert::list_of(names) +
                          evert::did_you_mean(command, names));

@@ -1,4 +1,4 @@
-# cmake -DNM=nm -DLEVEL=v3 -DREGISTER_BYTES=32 -DOBJECT=level.cpp.o -P kernel_symbols.cmake
+# cmake -DNM=nm -DLEVEL=v3 -DREGISTER_BYTES=32 -DOBJECT=level.cpp.o [-DMAY_HAVE_NONE=ON] -P kernel_symbols.cmake
 #
 # Every weak definition in the kernels of a CPU level must carry the pack type of that level in its name. Any other one
 # may be defined by another object too, and then the linker keeps one of them, perhaps the one an older CPU cannot run.
@@ -20,7 +20,7 @@ foreach(symbol IN LISTS symbols)
     string(APPEND foreign "\n  ${name}")
   endif()
 endforeach()
-if(own EQUAL 0)
+if(own EQUAL 0 AND NOT MAY_HAVE_NONE)
   message(FATAL_ERROR "no weak symbol of level ${LEVEL} in ${OBJECT}: is this the right object?")
 endif()
 if(NOT foreign STREQUAL "")

@@ -1,0 +1,98 @@
+#include "evert/app/bench_command.hpp"
+
+#include "evert/bench/kernel_report.hpp"
+#include "evert/core/collective.hpp"
+#include "evert/io/files.hpp"
+
+#include "command_options.hpp"
+#include <algorithm>
+#include <vector>
+
+namespace evert {
+namespace {
+
+constexpr const char* help = R"(evert bench: measures Evert on this machine; under mpirun all ranks together
+
+evert bench kernels [options]     rates of the element kernels: tetrahedra, points of hexahedra, SVDs and
+                                  products with the damping operator per second, best and median of many
+                                  short samples; beside them what they are a multiple of (a naive code,
+                                  PETSc's BAIJ product), and the share of what the processor allows
+  -bench_size S[,S...]            small, 100K, 1M: so many tetrahedra; 100K,1M unless given
+  -bench_seconds T                processor time for each kernel and size; 2 unless given
+  -bench_json FILE                the figures, for programs
+
+The environment variable EVERT_CPU_LEVEL (v2, v3, v4) chooses narrower kernels than this processor could run.
+)";
+
+std::vector<bench::KernelSize> sizes_from(const std::string& list) {
+  const auto all = bench::kernel_sizes();
+  std::vector<std::string> names;
+  for (const auto& size : all) names.push_back(size.name);
+  std::vector<bench::KernelSize> sizes;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const auto end = std::min(list.find(',', begin), list.size());
+    const auto name = list.substr(begin, end - begin);
+    const auto found = std::ranges::find(all, name, &bench::KernelSize::name);
+    if (found == all.end())
+      throw UserError("evert bench kernels: -bench_size is '" + name + "': must be " + list_of(names) +
+                      did_you_mean(name, names));
+    sizes.push_back(*found);
+    begin = end + 1;
+  }
+  return sizes;
+}
+
+double seconds_from(const CommandOptions& options) {
+  constexpr double longest = 3600;
+  const double seconds = options.number("bench_seconds");
+  if (!(seconds > 0 && seconds <= longest))
+    throw UserError("evert bench kernels: -bench_seconds must be above 0 and at most 3600, not " +
+                    options.text("bench_seconds"));
+  return seconds;
+}
+
+int kernels_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
+  const CommandOptions options("evert bench kernels", arguments,
+                               {"bench_size", "bench_seconds", "bench_json"}, {}, {});
+  const auto sizes = sizes_from(options.has("bench_size") ? options.text("bench_size") : "100K,1M");
+  const double seconds = options.has("bench_seconds") ? seconds_from(options) : 2.0;
+  const auto json = options.has("bench_json") ? options.text("bench_json") : "";
+  on_root(comm, [&] {
+    if (!json.empty()) require_writable(json);
+  });
+
+  const bool reports = rank_of(comm) == 0;
+  bench::KernelReport report{bench::current_setting(comm), {}};
+  if (reports) print_head(report.setting, out);
+  for (const auto& size : sizes) {
+    report.sizes.push_back(bench::measure_kernels(comm, size, seconds));
+    if (reports) print_table(report.sizes.back(), out);
+    out.flush();
+  }
+  on_root(comm, [&] {
+    if (!json.empty()) write_file(json, bench::json_text(report));
+  });
+  if (reports && !json.empty()) out << "\nwrote " << json << '\n';
+  return 0;
+}
+
+}  // namespace
+
+int bench_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
+  const std::vector<std::string> commands{"kernels"};
+  const auto asks_for_help = [](const std::string& word) {
+    return word == "-h" || word == "-help" || word == "--help";
+  };
+  if (std::ranges::any_of(arguments, asks_for_help)) {
+    if (rank_of(comm) == 0) out << help;
+    return 0;
+  }
+  if (arguments.empty())
+    throw UserError("evert bench needs a command: " + list_of(commands) + "; see evert bench --help");
+  const auto& command = arguments.front();
+  if (command == "kernels") return kernels_command(comm, arguments.subspan(1), out);
+  throw UserError("evert bench: there is no command '" + command + "': must be " + list_of(commands) +
+                  did_you_mean(command, commands));
+}
+
+}  // namespace evert

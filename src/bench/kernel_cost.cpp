@@ -1,0 +1,106 @@
+#include "evert/bench/kernel_cost.hpp"
+
+#include "evert/elements/reference_element.hpp"
+#include "evert/forces/kernels/kernel_table.hpp"
+#include "evert/math/svd3.hpp"
+
+#include "counted.hpp"
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace evert::bench {
+namespace {
+
+/// Distinct numbers in memory, without the temporaries on the stack of the function whose variable is `frame`
+/// and of those that it called.
+double numbers_in_memory(const std::unordered_set<const double*>& numbers, const char& frame) {
+  constexpr std::uintptr_t deepest = 1U << 20U;
+  const auto on_stack = [&](const double* number) {
+    return reinterpret_cast<std::uintptr_t>(&frame) - reinterpret_cast<std::uintptr_t>(number) < deepest;
+  };
+  double count = 0;
+  for (const auto* number : numbers) count += on_stack(number) ? 0 : 1;
+  return count;
+}
+
+template <class Work>
+KernelCost cost_of(Work&& work) {
+  const char frame = 0;
+  Counted::so_far() = {};
+  work();
+  const auto& log = Counted::so_far();
+  return {log.flops, log.divisions,
+          8 * numbers_in_memory(log.read, frame) + 16 * numbers_in_memory(log.written, frame)};
+}
+
+/// Unit tetrahedron and unit cube, nodes in the order of VTK.
+std::vector<Vec3d> unit_cell(CellType type) {
+  if (type == CellType::tet4) return {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+  return {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},
+          {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
+}
+
+/// One cell, deformed by nothing in particular: the kernels have no branches.
+template <const auto& element, DampingModel damping>
+struct CountedCell {
+  std::vector<double> x;
+  std::vector<double> f = std::vector<double>(3 * element.nodes + 1);
+  std::unique_ptr<ElasticBlock> block;
+
+  CountedCell() {
+    std::vector<LocalIndex> nodes(element.nodes);
+    std::iota(nodes.begin(), nodes.end(), 0);
+    const auto rest = unit_cell(element.type);
+    for (const Vec3d& p : rest) x.insert(x.end(), {1.1 * p[0] + 0.3 * p[1], p[1], 0.9 * p[2]});
+    x.push_back(0);  // the double of slack that kernels may read
+    block = make_elastic_block({element.type, nodes, 1, 1}, rest, NeoHookean{.lame = {1, 1}}, {damping, 1, 1},
+                               kernels::kernels_of<Counted, element, NeoHookean, damping>());
+  }
+
+  void update() { block->update(x.data(), f.data(), block->interior()); }
+
+  /// Per quadrature point, with what is done to whole nodes outside Counted: differences to the first node,
+  /// the balance on it, and the sums into f.
+  [[nodiscard]] KernelCost per_point(KernelCost counted) const {
+    constexpr double nodes_of_cell = element.nodes;
+    counted.flops += 3 * (2 * (nodes_of_cell - 1) + nodes_of_cell);
+    counted.bytes += nodes_of_cell * sizeof(LocalIndex);
+    return {counted.flops / element.points, counted.divisions / element.points,
+            counted.bytes / element.points};
+  }
+};
+
+template <const auto& element, DampingModel damping>
+KernelCost force_cost_of() {
+  CountedCell<element, damping> cell;
+  return cell.per_point(cost_of([&] { cell.update(); }));
+}
+
+template <const auto& element>
+KernelCost force_cost_of(DampingModel damping) {
+  return damping == DampingModel::rotated ? force_cost_of<element, DampingModel::rotated>()
+                                          : force_cost_of<element, DampingModel::none>();
+}
+
+}  // namespace
+
+KernelCost force_cost(CellType type, DampingModel damping) {
+  return type == CellType::tet4 ? force_cost_of<tet4>(damping) : force_cost_of<hex8>(damping);
+}
+
+KernelCost damping_cost() {
+  CountedCell<tet4, DampingModel::rotated> cell;
+  cell.update();
+  return cell.per_point(
+      cost_of([&] { cell.block->add_damping(cell.x.data(), cell.f.data(), 1, cell.block->interior()); }));
+}
+
+KernelCost svd_cost() {
+  const Mat3<Counted> f{{{{1.1, 0.2, 0.1}, {-0.3, 0.9, 0.2}, {0.1, 0.4, 1.2}}}};
+  auto cost = cost_of([&] { static_cast<void>(svd3(f)); });
+  cost.bytes = sizeof(Mat3d);
+  return cost;
+}
+
+}  // namespace evert::bench

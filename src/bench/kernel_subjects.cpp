@@ -1,0 +1,119 @@
+#include "kernel_subjects.hpp"
+
+#include "evert/bench/level_kernels.hpp"
+#include "evert/core/collective.hpp"
+
+#include <algorithm>
+
+namespace evert::bench {
+namespace {
+
+// No kernel takes another time for another of these.
+constexpr double density = 1000;           // [kg/m^3]
+constexpr double damping_time = 0.01;      // [s] stiffness-proportional
+constexpr double damping_factor = 0.5e-3;  // [s] s of M + s C: half a step
+// Calls of some 10 µs.
+constexpr std::size_t multiply_add_steps = 3000;
+constexpr std::size_t division_steps = 100;
+constexpr NeoHookean material{.lame = Lame::from_young_poisson(1e5, 0.4)};
+
+ElasticProperties properties(DampingModel damping) {
+  return {density, material,
+          damping == DampingModel::none ? Damping{}
+                                        : Damping::stiffness_proportional(
+                                              damping, damping_time, material.lame.lambda, material.lame.mu)};
+}
+
+ElasticForces elastic(const Specimen& specimen, DampingModel damping) {
+  const auto all = properties(damping);
+  return {specimen.mesh, std::span(&all, 1)};
+}
+
+/// The same number on every rank, for parts of some thousand cells.
+std::size_t parts_of(const DistributedMesh& mesh) {
+  constexpr GlobalIndex cells_of_part = 4096;
+  const GlobalIndex parts = mesh.total_cells / (size_of(mesh.comm) * cells_of_part);
+  return static_cast<std::size_t>(std::max<GlobalIndex>(1, parts));
+}
+
+}  // namespace
+
+TetSubject::TetSubject(MPI_Comm comm, int divisions)
+    : specimen_(comm, CellType::tet4, divisions),
+      result_(specimen_.mesh),
+      plain_(elastic(specimen_, DampingModel::none)),
+      damped_(elastic(specimen_, DampingModel::rotated)),
+      operator_(specimen_.mesh, damped_),
+      assembled_(operator_, MATBAIJ),
+      naive_(specimen_.mesh.cells.front().nodes, specimen_.mesh.rest_positions, material),
+      naive_result_(result_.local().size()),
+      naive_parts_(naive_.cells(), parts_of(specimen_.mesh)),
+      svd_parts_(naive_parts_) {
+  damped_force();  // C is that of the last update
+  operator_.set(damping_factor, {});
+  assembled_.assemble();
+  for (std::size_t cell = 0; cell < naive_.cells(); ++cell)
+    gradients_.push_back(naive_.deformation_gradient(specimen_.positions.local(), cell));
+}
+
+double TetSubject::inverted() const {
+  GlobalIndex count = plain_.inverted_points(specimen_.positions);
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, specimen_.mesh.comm);
+  return static_cast<double>(count) / cells();
+}
+
+KernelCost TetSubject::baij_cost() const {
+  MatInfo info{};
+  check(MatGetInfo(assembled_.mat(), MAT_GLOBAL_SUM, &info));
+  // A multiplication and an addition for each entry; a column number for each block of nine.
+  const double bytes = (sizeof(PetscScalar) + sizeof(PetscInt) / 9.0) * info.nz_used;
+  return {2 * info.nz_used / cells(), 0, bytes / cells()};
+}
+
+void TetSubject::damping() {
+  std::ranges::fill(result_.owned(), 0.0);
+  damped_.add_damping(specimen_.velocities, result_, damping_factor);
+}
+
+void TetSubject::naive_force_part() {
+  const auto [begin, end] = naive_parts_.next();
+  if (begin == 0) std::ranges::fill(naive_result_, 0.0);
+  naive_.add(specimen_.positions.local(), naive_result_, begin, end);
+}
+
+// As a kernel that needs U and V goes on with them: a run at a time, before they leave the cache.
+void TetSubject::svd_part() {
+  constexpr std::size_t run = 64;
+  const auto& kernels = level_kernels();
+  decompositions_.resize(run);
+  const auto [begin, end] = svd_parts_.next();
+  for (std::size_t first = begin; first < end; first += run)
+    kernels.svd3(&gradients_[first], decompositions_.data(), std::min(run, end - first));
+}
+
+HexSubject::HexSubject(MPI_Comm comm, int divisions)
+    : specimen_(comm, CellType::hex8, divisions),
+      result_(specimen_.mesh),
+      plain_(elastic(specimen_, DampingModel::none)) {}
+
+CeilingSubject::CeilingSubject(std::size_t memory) {
+  const std::size_t count = std::max<std::size_t>(1, memory / (3 * sizeof(double) * 8)) * 8;
+  a_.assign(count, 0.0);
+  b_.assign(count, 1.0);
+  c_.assign(count, 2.0);
+}
+
+double CeilingSubject::flops() { return multiply_add_steps * level_kernels().flops_per_step; }
+
+double CeilingSubject::divisions() { return division_steps * level_kernels().divisions_per_step; }
+
+// The cache line of a[i] is read before it is written.
+double CeilingSubject::triad_bytes() const { return 4.0 * sizeof(double) * static_cast<double>(a_.size()); }
+
+void CeilingSubject::multiply_add() { sum_ += level_kernels().multiply_add(multiply_add_steps); }
+
+void CeilingSubject::divide_and_root() { sum_ += level_kernels().divide_and_root(division_steps); }
+
+void CeilingSubject::triad() { level_kernels().triad(a_.data(), b_.data(), c_.data(), 0.5, a_.size()); }
+
+}  // namespace evert::bench
