@@ -188,8 +188,8 @@ struct BatchSteps {
 /// Damping does not see a spin, and so 2/√(rλ) is that limit. But the fast motion of a flat cell is one node
 /// against its base, never a spin alone: as much of it is strain, which damping sees. With Δt ≤ τ/2k, k the
 /// skew part in units of 2μ, and Δt ≤ τ/s what is left undamped is a spin of the whole base, at k·λ_spin
-/// (`spin_stiffness`, RestStiffness), and half of the limit returned is safe. docs/design/time-stepping.md has
-/// the proof.
+/// (`spin_stiffness`, RestStiffness), and half of the limit returned is safe. docs/design/time-stepping.md
+/// has the proof.
 template <Real T>
 EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, const T& rest_stiffness,
                                                const T& spin_stiffness, const T& time) {
@@ -199,8 +199,8 @@ EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, con
   const T stretching = max(bound.stretching, T(1.0));
   const T skew = max(bound.skew, T(1e-30));
   const T free_spin = T(2.0) / sqrt(max(bound.spin, T(1e-30)) * lambda);
-  const T damped_spin = min(min(time / skew, T(2.0) * time / stretching),
-                            T(2.0) / sqrt(skew * max(spin_stiffness, tiny)));
+  const T damped_spin =
+      min(min(time / skew, T(2.0) * time / stretching), T(2.0) / sqrt(skew * max(spin_stiffness, tiny)));
   const T spinning = max(free_spin, damped_spin);
   const T half_damping = T(0.5) * time * lambda;
   const T stiffness = (stretching + bound.spin) * lambda;
@@ -233,8 +233,8 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
         const T remaining = min(max(smallest_stretch(run.plane[i]), T(0.0)), T(1.0));
         credited *= remaining * remaining;
       }
-      const BatchSteps<T> steps = stable_steps(tangent_bound(model, sigma, element.points), stiffness,
-                                               spin_stiffness, credited);
+      const BatchSteps<T> steps =
+          stable_steps(tangent_bound(model, sigma, element.points), stiffness, spin_stiffness, credited);
       undamped = min(undamped, steps.undamped);
       damped = min(damped, steps.damped);
     }

@@ -24,7 +24,8 @@
 /// All are rigorous for one point; several with different R make them an estimate.
 namespace evert::kernels {
 
-/// In units of λ_e where not said otherwise; ≥ 0: directions in which the tangent is negative need no small step.
+/// In units of λ_e where not said otherwise; ≥ 0: directions in which the tangent is negative need no small
+/// step.
 template <class T>
 struct TangentBound {
   T stretching;  ///< the symmetric part, which damping sees
