@@ -1,11 +1,21 @@
 #include "evert/app/bench_command.hpp"
 
+#include "evert/app/command_line.hpp"
+#include "evert/app/observer.hpp"
+#include "evert/app/run_loop.hpp"
 #include "evert/bench/kernel_report.hpp"
+#include "evert/bench/step_profile.hpp"
 #include "evert/core/collective.hpp"
 #include "evert/io/files.hpp"
+#include "evert/scene/build.hpp"
+#include "evert/scene/load.hpp"
+#include "evert/scene/petsc_options.hpp"
 
 #include "command_options.hpp"
 #include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace evert {
@@ -20,6 +30,9 @@ evert bench kernels [options]     rates of the element kernels: tetrahedra, poin
   -bench_size S[,S...]            small, 100K, 1M: so many tetrahedra; 100K,1M unless given
   -bench_seconds T                processor time for each kernel and size; 2 unless given
   -bench_json FILE                the figures, for programs
+
+evert bench step scene.yaml [options]     what the time of the steps of a scene goes into, without output;
+                                  options are those of evert run
 
 The environment variable EVERT_CPU_LEVEL (v2, v3, v4) chooses narrower kernels than this processor could run.
 )";
@@ -76,10 +89,48 @@ int kernels_command(MPI_Comm comm, std::span<const std::string> arguments, std::
   return 0;
 }
 
+/// Makes the run stop where frames would be written, without writing any, and counts.
+class FrameTimes final : public Observer {
+ public:
+  explicit FrameTimes(const std::optional<double>& per_second) {
+    if (per_second) schedule_.emplace(1 / *per_second);
+  }
+  [[nodiscard]] double next_stop(double time) const override {
+    return schedule_ ? schedule_->next_after(time) : std::numeric_limits<double>::infinity();
+  }
+  void observe(Simulation& /*simulation*/, const StepReport& report) override {
+    cg_iterations += report.cg_iterations;
+  }
+  std::int64_t cg_iterations = 0;
+
+ private:
+  std::optional<Schedule> schedule_;
+};
+
+int step_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
+  const auto run = parse_run_arguments(arguments);
+  const auto scene = load_scene(comm, run.scene, run.overrides);
+  apply_petsc_block(scene);
+  auto built = build_scene(comm, scene);
+  reject_unused_options(comm, run.allow_unknown_options);
+
+  auto frames = std::make_unique<FrameTimes>(scene.output.frames_per_second);
+  const auto& counted = *frames;
+  std::vector<std::unique_ptr<Observer>> observers;
+  observers.push_back(std::move(frames));
+  const bench::StepProfiler profiler(*built.simulation);
+  run_loop(*built.simulation, scene.end_time, observers);
+  constexpr double ceiling_seconds = 0.5;
+  const auto profile = profiler.finish(ceiling_seconds);
+  const auto setting = bench::current_setting(comm);
+  if (rank_of(comm) == 0) print_profile(profile, scene.name, counted.cg_iterations, setting, out);
+  return 0;
+}
+
 }  // namespace
 
 int bench_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
-  const std::vector<std::string> commands{"kernels"};
+  const std::vector<std::string> commands{"kernels", "step"};
   const auto asks_for_help = [](const std::string& word) {
     return word == "-h" || word == "-help" || word == "--help";
   };
@@ -90,6 +141,7 @@ int bench_command(MPI_Comm comm, std::span<const std::string> arguments, std::os
   if (arguments.empty())
     throw UserError("evert bench needs a command: " + list_of(commands) + "; see evert bench --help");
   const auto& command = arguments.front();
+  if (command == "step") return step_command(comm, arguments.subspan(1), out);
   if (command == "kernels") return kernels_command(comm, arguments.subspan(1), out);
   throw UserError("evert bench: there is no command '" + command + "': must be " + list_of(commands) +
                   did_you_mean(command, commands));

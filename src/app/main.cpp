@@ -18,6 +18,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,9 +81,10 @@ int guarded(const std::string& command, const Arguments& arguments) {
 /// PETSc sees its own options only; a command line that cannot be taken apart is left to the command to
 /// complain about.
 Arguments petsc_options(const std::string& command, const Arguments& arguments) {
-  if (command != "run" && command != "check") return {};
+  const bool runs_steps = command == "bench" && !arguments.empty() && arguments.front() == "step";
+  if (command != "run" && command != "check" && !runs_steps) return {};
   try {
-    return evert::parse_run_arguments(arguments).petsc;
+    return evert::parse_run_arguments(std::span(arguments).subspan(runs_steps ? 1 : 0)).petsc;
   } catch (const evert::UserError&) {
     return {};
   }

@@ -14,6 +14,7 @@ struct Log {
   std::array<PetscLogEvent, phase_count> events{};
   std::array<PetscLogStage, 2> stages{};
   std::array<double, phase_count> seconds{};
+  std::array<std::int64_t, phase_count> calls{};
   bool registered = false;
 };
 Log& log() {
@@ -48,6 +49,7 @@ StageScope::StageScope(Stage stage) {
 StageScope::~StageScope() { static_cast<void>(PetscLogStagePop()); }
 
 PhaseScope::PhaseScope(Phase phase, double flops) : phase_(phase), begin_(MPI_Wtime()) {
+  ++log().calls[index(phase)];
   if (!log().registered) return;
   PetscLogEventBegin(log().events[index(phase)], 0, 0, 0, 0);
   static_cast<void>(PetscLogFlops(flops));
@@ -59,5 +61,6 @@ PhaseScope::~PhaseScope() {
 }
 
 const std::array<double, phase_count>& phase_seconds() { return log().seconds; }
+const std::array<std::int64_t, phase_count>& phase_calls() { return log().calls; }
 
 }  // namespace evert

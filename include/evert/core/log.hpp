@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 /// Where the time goes: one set of phases, shown by PETSc's -log_view and, without any option, in
@@ -52,5 +53,7 @@ class PhaseScope {
 
 /// Wall seconds of this rank booked to each phase so far.
 [[nodiscard]] const std::array<double, phase_count>& phase_seconds();
+/// How often each phase began so far.
+[[nodiscard]] const std::array<std::int64_t, phase_count>& phase_calls();
 
 }  // namespace evert

@@ -113,6 +113,7 @@ class Halo {
   void check_belongs(const NodeField& field) const;
 
   std::size_t local_values_;  // the plan itself is shared by the vectors of the fields
+  bool alone_;                // one rank has nothing to exchange, and PETSc would allocate to find out
 };
 
 }  // namespace evert
