@@ -8,7 +8,7 @@ namespace evert {
 
 struct HtmlViewOptions {
   std::string title{};
-  std::size_t max_frames = 120;         ///< ≥ 1; evenly spaced, with the first and the last
+  std::size_t max_frames = 240;         ///< ≥ 1; evenly spaced, with the first and the last
   std::size_t max_triangles = 100'000;  ///< ≥ 1; larger surfaces are simplified
   std::size_t max_bytes = 30'000'000;   ///< of the page: fewer frames are shown where it would be larger
   std::size_t up = 1;                   ///< axis that points up: 0, 1 or 2
