@@ -41,6 +41,11 @@ class CellList {
   throw UserError(message.str());
 }
 
+/// Vectors kept per point.
+std::size_t shape_vectors(ShapeData kind, int nodes) {
+  return kind == ShapeData::inverse_jacobian ? 3 : static_cast<std::size_t>(nodes) - 1;
+}
+
 /// Writes the numbers of one cell into its lane of a block.
 template <int nodes, int points>
 class LaneWriter {
@@ -58,17 +63,22 @@ class LaneWriter {
       const Mat3d jacobian = rest_jacobian(element_, q, cell, rest_positions);
       block_.volumes[at(slot, points, q)] = element_.weights[q] * determinant(jacobian);
       const Mat3d inverse_jacobian = inverse(jacobian);
-      for (std::size_t a = 1; a < nodes; ++a) {
-        const Vec3d gradient = transpose_times(inverse_jacobian, element_.gradients[q][a]);
-        for (std::size_t i = 0; i < 3; ++i) {
-          block_.gradients[at(slot, gradient_numbers, (q * (nodes - 1) + a - 1) * 3 + i)] = gradient[i];
-        }
+      if (block_.shape_data == ShapeData::inverse_jacobian) {
+        for (std::size_t j = 0; j < 3; ++j) write_shape(slot, q, j, inverse_jacobian.column[j]);
+      } else {
+        for (std::size_t a = 1; a < nodes; ++a)
+          write_shape(slot, q, a - 1, transpose_times(inverse_jacobian, element_.gradients[q][a]));
       }
     }
   }
 
  private:
-  static constexpr std::size_t gradient_numbers = points * (nodes - 1) * 3;
+  /// Vector number `j` of point `q`.
+  void write_shape(std::size_t slot, std::size_t q, std::size_t j, const Vec3d& vector) {
+    const std::size_t per_point = shape_vectors(block_.shape_data, nodes);
+    for (std::size_t i = 0; i < 3; ++i)
+      block_.shapes[at(slot, 3 * points * per_point, 3 * (q * per_point + j) + i)] = vector[i];
+  }
 
   /// Position of number `i` of the `count` a cell has, in an array [batch][count][lane].
   [[nodiscard]] std::size_t at(std::size_t slot, std::size_t count, std::size_t i) const {
@@ -116,7 +126,7 @@ std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const Loca
 }
 
 ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes, LocalIndex interior,
-                                std::span<const Vec3d> rest_positions, int lanes) {
+                                std::span<const Vec3d> rest_positions, int lanes, ShapeData shape_data) {
   return with_reference_element(
       type, [&]<int node_total, int point_total>(const ReferenceElement<node_total, point_total>& element) {
         const CellList cells(nodes, node_total);
@@ -127,6 +137,7 @@ ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes
         ElementBlock block;
         block.type = type;
         block.lanes = lanes;
+        block.shape_data = shape_data;
         block.cells = cells.size();
         block.cell_of_lane = lanes_of_cells(nodes, node_total, cells.size(), interior, lanes);
         block.interior = {0, (interior + lanes - 1) / lanes};
@@ -134,7 +145,7 @@ ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes
 
         const std::size_t slots = block.cell_of_lane.size();
         block.nodes.resize(slots * node_total);
-        block.gradients.resize(slots * point_total * (node_total - 1) * 3);
+        block.shapes.resize(slots * point_total * 3 * shape_vectors(shape_data, node_total));
         block.volumes.resize(slots * point_total);
         LaneWriter writer(element, block);
         for (std::size_t slot = 0; slot < slots; ++slot) {

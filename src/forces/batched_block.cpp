@@ -24,15 +24,27 @@ std::size_t bytes(const Vector& v) {
 /// h_bᵀ), h = A g.
 template <int nodes>
 struct DampingPoint {
-  std::array<Vec3d, nodes> gradients;  ///< g_a
-  Mat3d frame;                         ///< A
-  double volume;                       ///< V
+  NodeVectors<nodes> gradients;  ///< g_a
+  Mat3d frame;                   ///< A
+  double volume;                 ///< V
 
   [[nodiscard]] Mat3d block(std::size_t a, std::size_t b, const Damping& damping) const {
     const Vec3d ha = frame * gradients[a];
     const Vec3d hb = frame * gradients[b];
     const Mat3d shear = outer(hb, ha) + dot(gradients[a], gradients[b]) * times_transpose(frame, frame);
     return volume * (damping.beta * shear + damping.alpha * outer(ha, hb));
+  }
+
+  /// Adds all blocks to a dense row-major matrix.
+  void add_to(std::span<double> matrix, const Damping& damping) const {
+    for (std::size_t a = 0; a < nodes; ++a) {
+      for (std::size_t b = 0; b < nodes; ++b) {
+        const Mat3d of_nodes = block(a, b, damping);
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t j = 0; j < 3; ++j) matrix[(3 * a + i) * 3 * nodes + 3 * b + j] += of_nodes(i, j);
+        }
+      }
+    }
   }
 };
 
@@ -41,8 +53,8 @@ struct DampingPoint {
 BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> rest_positions,
                            const Material& material, const Damping& damping,
                            const kernels::ElasticKernels& kernels)
-    : element_block_(
-          make_element_block(cells.type, cells.nodes, cells.interior, rest_positions, kernels.lanes)),
+    : element_block_(make_element_block(cells.type, cells.nodes, cells.interior, rest_positions,
+                                        kernels.lanes, kernels.shape_data)),
       material_(material),
       damping_(damping),
       density_(cells.density),
@@ -61,7 +73,7 @@ BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> res
 }
 
 void BatchedBlock::point_kernels_at_memory() {
-  arrays_ = {element_block_.nodes.data(),    element_block_.gradients.data(),
+  arrays_ = {element_block_.nodes.data(),    element_block_.shapes.data(),
              element_block_.volumes.data(),  element_block_.cell_of_lane.data(),
              rest_stiffness_.largest.data(), rest_stiffness_.spin.data(),
              damping_state_.data()};
@@ -84,38 +96,22 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
   if (!damped()) return;
   const auto lanes = static_cast<std::size_t>(element_block_.lanes);
   const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
-  const auto state = [&](std::size_t vector) {
-    const double* of_lane =
-        &damping_state_[slot / lanes * lanes * static_cast<std::size_t>(kernels_.damping_numbers) +
-                        3 * vector * lanes + slot % lanes];
-    return Vec3d{of_lane[0], of_lane[lanes], of_lane[2 * lanes]};
+  const double* state =
+      &damping_state_[slot / lanes * lanes * static_cast<std::size_t>(kernels_.damping_numbers) +
+                      slot % lanes];
+  const auto add_points = [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
+    for (std::size_t q = 0; q < points; ++q) {
+      if (kernels_.rotated_gradients) {  // V is in the h_a already
+        const auto h = read_gradients(element, element_block_.shape_data, state, lanes, q);
+        DampingPoint<nodes>{h, identity<double>(), 1}.add_to(matrix, damping_);
+      } else {
+        const auto rest = rest_point(element, element_block_, slot, q);
+        const Mat3d frame = read_matrix(state + 9 * q * lanes, lanes);
+        DampingPoint<nodes>{rest.gradients, frame, rest.volume}.add_to(matrix, damping_);
+      }
+    }
   };
-  with_reference_element(element_block_.type,
-                         [&]<int nodes, int points>(const ReferenceElement<nodes, points>& /*e*/) {
-                           for (std::size_t q = 0; q < points; ++q) {
-                             const RestPoint<nodes> rest = rest_point<nodes, points>(element_block_, slot, q);
-                             DampingPoint<nodes> point{rest.gradients, identity<double>(), rest.volume};
-                             if (kernels_.rotated_gradients) {
-                               point.volume = 1;  // in the h_a already
-                               point.gradients[0] = {};
-                               for (std::size_t a = 1; a < nodes; ++a) {
-                                 point.gradients[a] = state(a - 1);
-                                 point.gradients[0] -= point.gradients[a];
-                               }
-                             } else {
-                               point.frame = {state(3 * q), state(3 * q + 1), state(3 * q + 2)};
-                             }
-                             for (std::size_t a = 0; a < nodes; ++a) {
-                               for (std::size_t b = 0; b < nodes; ++b) {
-                                 const Mat3d block = point.block(a, b, damping_);
-                                 for (std::size_t i = 0; i < 3; ++i) {
-                                   for (std::size_t j = 0; j < 3; ++j)
-                                     matrix[(3 * a + i) * 3 * nodes + 3 * b + j] += block(i, j);
-                                 }
-                               }
-                             }
-                           }
-                         });
+  with_reference_element(element_block_.type, add_points);
 }
 
 std::span<const LocalIndex> BatchedBlock::cell_nodes(LocalIndex cell) const {
@@ -160,7 +156,7 @@ void BatchedBlock::set_mass_shares(std::span<const double> shares) {
 }
 
 std::size_t BatchedBlock::memory() const {
-  return bytes(element_block_.nodes) + bytes(element_block_.gradients) + bytes(element_block_.volumes) +
+  return bytes(element_block_.nodes) + bytes(element_block_.shapes) + bytes(element_block_.volumes) +
          bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) +
          bytes(damping_state_) + bytes(cell_nodes_) + bytes(lane_of_cell_);
 }

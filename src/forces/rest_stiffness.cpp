@@ -66,9 +66,10 @@ CellStiffness dense_stiffness(const std::array<RestPoint<nodes>, points>& at,
 
 /// All points of the cell in lane number `slot`.
 template <int nodes, int points>
-std::array<RestPoint<nodes>, points> rest_points(const ElementBlock& block, std::size_t slot) {
+std::array<RestPoint<nodes>, points> rest_points(const ReferenceElement<nodes, points>& element,
+                                                 const ElementBlock& block, std::size_t slot) {
   std::array<RestPoint<nodes>, points> at;
-  for (std::size_t q = 0; q < points; ++q) at[q] = rest_point<nodes, points>(block, slot, q);
+  for (std::size_t q = 0; q < points; ++q) at[q] = rest_point(element, block, slot, q);
   return at;
 }
 
@@ -79,12 +80,12 @@ RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> 
   const auto slots = block.cell_of_lane.size();
   RestStiffness stiffness{AlignedVector<double>(slots, 0.0), AlignedVector<double>(slots, 0.0)};
   with_reference_element(block.type,
-                         [&]<int nodes, int points>(const ReferenceElement<nodes, points>& /*element*/) {
+                         [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
                            for (std::size_t slot = 0; slot < slots; ++slot) {
                              if (block.cell_of_lane[slot] < 0) continue;
                              const auto cell = static_cast<std::size_t>(block.cell_of_lane[slot]);
                              const auto masses = mass_shares.subspan(nodes * cell).template first<nodes>();
-                             const auto at = rest_points<nodes, points>(block, slot);
+                             const auto at = rest_points(element, block, slot);
                              CellStiffness of_cell{};
                              if constexpr (points == 1) {
                                of_cell = one_point_stiffness<nodes>(at[0], masses, lame);
@@ -106,7 +107,7 @@ std::vector<double> own_mass_shares(const ElementBlock& block, double density) {
                            for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
                              if (block.cell_of_lane[slot] < 0) continue;
                              const auto cell = static_cast<std::size_t>(block.cell_of_lane[slot]);
-                             const auto at = rest_points<nodes, points>(block, slot);
+                             const auto at = rest_points(element, block, slot);
                              for (std::size_t q = 0; q < points; ++q)
                                for (std::size_t a = 0; a < nodes; ++a)
                                  shares[nodes * cell + a] += density * at[q].volume * element.values[q][a];

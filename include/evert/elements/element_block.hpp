@@ -18,6 +18,13 @@ struct BatchRange {
   LocalIndex end = 0;
 };
 
+/// What is kept of the rest shape at each quadrature point.
+enum class ShapeData {
+  node_gradients,  ///< ∂N_a/∂X of every node but the first, whose gradient is minus their sum [1/m]; for
+                   ///< tet4 these are the rows of D_m⁻¹
+  inverse_jacobian,  ///< (∂X/∂ξ)⁻¹ by columns; for elements that are tensor products
+};
+
 struct ElementBlock {
   CellType type = CellType::tet4;
   int lanes = 1;  ///< cells per batch: the width of the SIMD pack that will read them
@@ -25,9 +32,8 @@ struct ElementBlock {
   BatchRange interior;              ///< batches whose cells touch owned nodes only
   BatchRange boundary;              ///< the others
   AlignedVector<LocalIndex> nodes;  ///< [batch][node of the cell][lane]
-  /// ∂N_a/∂X of every node but the first, whose gradient is minus their sum: [batch][point][node 1…][3][lane]
-  /// [1/m]. For tet4 these are the rows of D_m⁻¹.
-  AlignedVector<double> gradients;
+  ShapeData shape_data = ShapeData::node_gradients;
+  AlignedVector<double> shapes;   ///< [batch][point][node 1…][3][lane] or [batch][point][column][row][lane]
   AlignedVector<double> volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
   std::vector<LocalIndex>
       cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding
@@ -37,11 +43,11 @@ struct ElementBlock {
 
 /// Batches the cells of `type` for packs of `lanes`. `nodes`: node_count(type) per cell; cells [0, interior)
 /// become the interior batches, the others the boundary ones, each set ordered by batch_order(). Padding
-/// lanes have zero gradients and volume and the nodes of the last cell, so that reading and adding to them is
-/// safe. Throws UserError when a cell has no positive rest volume, with count and first numbers.
+/// lanes have zero shape data and volume and the nodes of the last cell, so that reading and adding to them
+/// is safe. Throws UserError when a cell has no positive rest volume, with count and first numbers.
 [[nodiscard]] ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes,
                                               LocalIndex interior, std::span<const Vec3d> rest_positions,
-                                              int lanes);
+                                              int lanes, ShapeData shape_data = ShapeData::node_gradients);
 
 /// Cells with a quadrature point at which the rest volume is zero, negative or not finite; ascending.
 [[nodiscard]] std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const LocalIndex> nodes,

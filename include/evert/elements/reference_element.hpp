@@ -20,6 +20,10 @@ struct ReferenceElement {
   using PerNode = std::array<Value, node_total>;
 
   CellType type;
+  /// The shape functions are products of those of one dimension, and so are the points: gradients can be
+  /// taken axis by axis, which needs no more of the rest shape than ∂X/∂ξ at each point
+  /// (kernels/tensor_product.hpp).
+  bool tensor_product = false;
   PerPoint<double> weights;            ///< W of paper A, section 4; they sum to the reference volume
   PerPoint<PerNode<double>> values;    ///< N_a at each point
   PerPoint<PerNode<Vec3d>> gradients;  ///< H: ∂N_a/∂ξ at each point
@@ -46,7 +50,8 @@ constexpr ReferenceElement<8, 8> make_hex8() {
                                           {{1, -1, 1}},
                                           {{1, 1, 1}},
                                           {{-1, 1, 1}}}};
-  ReferenceElement<8, 8> hex{.type = CellType::hex8, .weights = {}, .values = {}, .gradients = {}};
+  ReferenceElement<8, 8> hex{
+      .type = CellType::hex8, .tensor_product = true, .weights = {}, .values = {}, .gradients = {}};
   for (std::size_t q = 0; q < 8; ++q) {
     const Vec3d xi{(q & 1) != 0 ? gauss : -gauss, (q & 2) != 0 ? gauss : -gauss,
                    (q & 4) != 0 ? gauss : -gauss};

@@ -79,7 +79,7 @@ TEST(ElementBlock, PaddingHasNoShapeAndTheNodesOfACell) {
     for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
       if (block.cell_of_lane[slot] >= 0) continue;
       EXPECT_EQ(block.volumes[slot], 0);
-      for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(block.gradients[(slot / 4 * 9 + i) * 4 + slot % 4], 0);
+      for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(block.shapes[(slot / 4 * 9 + i) * 4 + slot % 4], 0);
       for (std::size_t a = 0; a < 4; ++a) {
         const LocalIndex node = block.nodes[(slot / 4 * 4 + a) * 4 + slot % 4];
         EXPECT_NE(std::find(nodes.begin(), nodes.end(), node), nodes.end());
@@ -116,7 +116,7 @@ void expect_linear_field_reproduced(CellType type, std::span<const LocalIndex> c
     };
     Mat3d f{};
     for (std::size_t n = 1; n < nodes; ++n) {
-      const double* g = &block.gradients[(point * (nodes - 1) + n - 1) * 3];
+      const double* g = &block.shapes[(point * (nodes - 1) + n - 1) * 3];
       f += outer(a * (position(n) - position(0)), Vec3d{g[0], g[1], g[2]});
     }
     EXPECT_NEAR(norm(f - a), 0, 1e-14);
@@ -179,7 +179,7 @@ TEST(ElementBlock, RefusesAbsurdCoordinates) {
 TEST(ElementBlock, EmptyListMakesAnEmptyBlock) {
   const auto block = make_element_block(CellType::tet4, {}, 0, {}, 4);
   EXPECT_EQ(block.batches(), 0);
-  EXPECT_TRUE(block.gradients.empty());
+  EXPECT_TRUE(block.shapes.empty());
 }
 
 }  // namespace

@@ -5,29 +5,23 @@
 /// The damping operator C(x), matrix-free.  paper A, section 6.2; PHYSICS 4
 ///
 /// Both models are one law, P = A (β (ḞᵀA + AᵀḞ) + α tr(AᵀḞ) I), with A = Q = U Vᵀ (rotated) or A = F
-/// (objective). Kept of each point is A, 9 numbers. Where A is a rotation and the cell has one point, less
-/// work remains when h_a = √V Q ∂N_a/∂X is kept instead, also 9 numbers for a tetrahedron: with L = Σ v_a
-/// h_aᵀ the damping force on node a is −S h_a, S = β (L + Lᵀ) + α tr(L) I.
+/// (objective). Kept of each point is A, 9 numbers. Where A is a rotation less work remains when the shape
+/// gradients h_a = √V Q ∂N_a/∂X are kept instead: with L = Σ v_a h_aᵀ the damping force on node a is −S h_a,
+/// S = β (L + Lᵀ) + α tr(L) I. Of a tetrahedron, and of a tensor product, whose (∂X/∂ξ)⁻¹ is turned and
+/// scaled (W = √V (∂X/∂ξ)⁻¹ Qᵀ), these are 9 numbers too.
 namespace evert::kernels {
 
 template <const auto& element, DampingModel damping>
-inline constexpr bool keeps_rotated_gradients = damping == DampingModel::rotated&& element.points == 1;
+inline constexpr bool keeps_rotated_gradients =
+    damping == DampingModel::rotated&& ShapeGradients<double, element>::numbers_per_point <= 9;
 
 /// Numbers kept per batch and lane.
 template <const auto& element, DampingModel damping>
-inline constexpr std::size_t damping_numbers = damping == DampingModel::none ? 0
-                                               : keeps_rotated_gradients<element, damping>
-                                                   ? 3 * (element.nodes - 1)
-                                                   : 9 * element.points;
-
-template <Real T>
-EVERT_ALWAYS_INLINE void store_vector(const Vec3<T>& v, double* to) {
-  for (std::size_t i = 0; i < 3; ++i) store(v[i], to + i * lanes_v<T>);
-}
-template <Real T>
-EVERT_ALWAYS_INLINE Vec3<T> load_vector(const double* from) {
-  return {load<T>(from), load<T>(from + lanes_v<T>), load<T>(from + 2 * lanes_v<T>)};
-}
+inline constexpr std::size_t damping_numbers =
+    damping == DampingModel::none ? 0
+                                  : element.points*(keeps_rotated_gradients<element, damping>
+                                                        ? ShapeGradients<double, element>::numbers_per_point
+                                                        : 9);
 
 /// The state of one batch.
 template <Real T, const auto& element, DampingModel damping>
@@ -39,21 +33,24 @@ struct DampingState {
       : numbers(block.damping_state +
                 static_cast<std::size_t>(batch) * damping_numbers<element, damping> * lanes) {}
 
-  EVERT_ALWAYS_INLINE double* vector(std::size_t i) const { return numbers + i * 3 * lanes; }
-  /// h_a of node a ≥ 1.
-  EVERT_ALWAYS_INLINE Vec3<T> rotated_gradient(std::size_t a) const { return load_vector<T>(vector(a - 1)); }
-  /// L = Σ v_a h_aᵀ = √V Ḟ Qᵀ, from differences of v.
-  EVERT_ALWAYS_INLINE Mat3<T> scaled_rate(const Edges<T, element.nodes>& edges) const {
-    Mat3<T> l = outer(edges[0], rotated_gradient(1));
-    for (std::size_t a = 2; a < element.nodes; ++a) l += outer(edges[a - 1], rotated_gradient(a));
-    return l;
-  }
+  /// h_a, to be used like the gradients at rest.
+  EVERT_ALWAYS_INLINE ShapeGradients<T, element> rotated_shape() const { return {numbers}; }
   /// A of point q.
-  EVERT_ALWAYS_INLINE Mat3<T> frame(std::size_t q) const {
-    return {load_vector<T>(vector(3 * q)), load_vector<T>(vector(3 * q + 1)),
-            load_vector<T>(vector(3 * q + 2))};
+  EVERT_ALWAYS_INLINE Mat3<T> frame(std::size_t q) const { return load_matrix<T>(numbers + 9 * q * lanes); }
+  EVERT_ALWAYS_INLINE void store_frame(std::size_t q, const Mat3<T>& frame) const {
+    store_matrix(frame, numbers + 9 * q * lanes);
   }
 };
+
+/// The gradients that the stresses of damping_stress_stage act on.
+template <Real T, const auto& element, DampingModel damping>
+EVERT_ALWAYS_INLINE ShapeGradients<T, element> damping_shape(const BlockArrays& block, LocalIndex batch) {
+  if constexpr (keeps_rotated_gradients<element, damping>) {
+    return DampingState<T, element, damping>(block, batch).rotated_shape();
+  } else {
+    return CellBatch<T, element>(block, batch).shape;
+  }
+}
 
 /// Keeps what C(x) needs of a diagonalised run.
 template <Real T, const auto& element, DampingModel damping>
@@ -67,11 +64,9 @@ EVERT_STAGE void keep_damping_state(const BlockArrays& block, BatchRange batches
                                 ? polar_rotation(run.left[i], run.plane[i], run.right[i])
                                 : run.deformation_gradient[i];
       if constexpr (keeps_rotated_gradients<element, damping>) {
-        const Mat3<T> scaled = sqrt(batch.volume(q)) * frame;
-        for (std::size_t a = 1; a < element.nodes; ++a)
-          store_vector(scaled * batch.gradient(q, a), state.vector(a - 1));
+        batch.shape.store_transformed(q, sqrt(batch.volume(q)) * frame, state.numbers);
       } else {
-        for (std::size_t j = 0; j < 3; ++j) store_vector(frame.column[j], state.vector(3 * q + j));
+        state.store_frame(q, frame);
       }
     }
   }
@@ -89,7 +84,7 @@ EVERT_ALWAYS_INLINE Mat3<T> viscous_stress(const Mat3<T>& l, const T& alpha, con
             {s02, s12, two_beta * l(2, 2) + pressure}}}};
 }
 
-/// S of every cell, or |∂X/∂ξ| W P of every point, at the velocities v.
+/// S of every point, or |∂X/∂ξ| W P, at the velocities v.
 template <Real T, const auto& element, DampingModel damping>
 EVERT_STAGE void damping_stress_stage(const BlockArrays& block, const double* v, double alpha, double beta,
                                       BatchRange batches, Mat3<T>* stresses) {
@@ -98,14 +93,17 @@ EVERT_STAGE void damping_stress_stage(const BlockArrays& block, const double* v,
     const DampingState<T, element, damping> state(block, b);
     const auto edges = batch.edges_of(v);
     if constexpr (keeps_rotated_gradients<element, damping>) {
-      *stresses++ = viscous_stress(state.scaled_rate(edges), T(alpha), T(beta));
+      state.rotated_shape().field_gradients(edges, [&](std::size_t q, const Mat3<T>& l) {
+        stresses[q] = viscous_stress(l, T(alpha), T(beta));
+      });
     } else {
-      for (std::size_t q = 0; q < batch.points; ++q) {
+      batch.shape.field_gradients(edges, [&](std::size_t q, const Mat3<T>& gradient) {
         const Mat3<T> frame = state.frame(q);
-        const Mat3<T> rate = transpose_times(frame, batch.field_gradient(edges, q));
-        *stresses++ = batch.volume(q) * (frame * viscous_stress(rate, T(alpha), T(beta)));
-      }
+        const Mat3<T> rate = transpose_times(frame, gradient);
+        stresses[q] = batch.volume(q) * (frame * viscous_stress(rate, T(alpha), T(beta)));
+      });
     }
+    stresses += element.points;
   }
 }
 
@@ -115,13 +113,8 @@ EVERT_STAGE void damping_force_stage(const BlockArrays& block, BatchRange batche
                                      double* out) {
   for (LocalIndex b = batches.begin; b < batches.end; ++b, stresses += element.points) {
     const CellBatch<T, element> batch(block, b);
-    Edges<T, element.nodes> forces;
-    if constexpr (keeps_rotated_gradients<element, damping>) {
-      const DampingState<T, element, damping> state(block, b);
-      for (std::size_t a = 1; a < element.nodes; ++a) forces[a - 1] = *stresses * state.rotated_gradient(a);
-    } else {
-      forces = batch.nodal_sums([&](std::size_t q) { return stresses[q]; });
-    }
+    const auto shape = damping_shape<T, element, damping>(block, b);
+    const auto forces = shape.nodal_sums([&](std::size_t q) { return stresses[q]; });
     scatter_balanced<T, element.nodes>(forces, out, batch.nodes);
   }
 }
@@ -152,6 +145,7 @@ void add_damping_diagonal(const BlockArrays& block, const Damping& coefficients,
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const CellBatch<T, element> batch(block, b);
     const DampingState<T, element, damping> state(block, b);
+    const auto shape = damping_shape<T, element, damping>(block, b);
     std::array<Mat3<T>, element.nodes> diagonal{};
     for (std::size_t q = 0; q < batch.points; ++q) {
       T weight = T(factor);
@@ -167,12 +161,7 @@ void add_damping_diagonal(const BlockArrays& block, const Damping& coefficients,
         diagonal[a] += damping_block(frame * gradient, dot(gradient, gradient), frame_square, alpha, beta);
       };
       for (std::size_t a = 1; a < element.nodes; ++a) {
-        Vec3<T> gradient;
-        if constexpr (keeps_rotated_gradients<element, damping>) {
-          gradient = state.rotated_gradient(a);
-        } else {
-          gradient = batch.gradient(q, a);
-        }
+        const Vec3<T> gradient = shape.gradient(q, a);
         first -= gradient;
         add(a, gradient);
       }

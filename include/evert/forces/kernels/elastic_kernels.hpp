@@ -11,9 +11,11 @@ namespace kernels {
 
 /// Named after the calls of ElasticBlock that they serve.
 struct ElasticKernels {
-  int lanes = 0;                   ///< cells per batch that the functions expect
-  int damping_numbers = 0;         ///< numbers of damping state per cell
-  bool rotated_gradients = false;  ///< the damping state holds h_a, not A (damping_kernels.hpp)
+  int lanes = 0;                                     ///< cells per batch that the functions expect
+  ShapeData shape_data = ShapeData::node_gradients;  ///< what they expect of the rest shape
+  int damping_numbers = 0;                           ///< numbers of damping state per cell
+  bool rotated_gradients = false;  ///< the damping state holds h_a, in the form of the shape data, not A
+                                   ///< (damping_kernels.hpp)
   void (*update)(const BlockArrays&, const Material&, const double* x, double* f, BatchRange) = nullptr;
   void (*add_damping)(const BlockArrays&, const Damping&, double factor, const double* v, double* out,
                       BatchRange) = nullptr;  ///< null without damping, as the next one

@@ -27,7 +27,7 @@ EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches,
   std::size_t first = 0;
   for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
     const CellBatch<T, element> batch(block, b);
-    const auto forces = batch.nodal_sums([&](std::size_t q) {
+    const auto forces = batch.shape.nodal_sums([&](std::size_t q) {
       const std::size_t i = first + q;
       return isotropic_tensor(run.left[i], run.plane[i], run.right[i], run.principal[i]);
     });

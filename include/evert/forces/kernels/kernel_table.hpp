@@ -12,6 +12,7 @@ template <Real T, const auto& element, class Model, DampingModel damping>
 constexpr ElasticKernels kernels_of() {
   ElasticKernels table{
       .lanes = static_cast<int>(lanes_v<T>),
+      .shape_data = element.tensor_product ? ShapeData::inverse_jacobian : ShapeData::node_gradients,
       .damping_numbers = static_cast<int>(damping_numbers<element, damping>),
       .rotated_gradients = keeps_rotated_gradients<element, damping>,
       .update = update<T, element, Model, damping>,

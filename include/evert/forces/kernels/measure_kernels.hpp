@@ -119,11 +119,11 @@ EVERT_STAGE void strain_rate_stage(const BlockArrays& block, const double* v, Ba
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const CellBatch<T, element> batch(block, b);
     const auto edges = batch.edges_of(v);
-    for (std::size_t q = 0; q < batch.points; ++q, ++i) {
-      const Mat3<T> turned = transpose_times(polar_rotation(run.left[i], run.plane[i], run.right[i]),
-                                             batch.field_gradient(edges, q));
-      fastest_squared = max(fastest_squared, symmetric_square(turned));
-    }
+    batch.shape.field_gradients(edges, [&](std::size_t q, const Mat3<T>& rate) {
+      const Mat3<T> rotation = polar_rotation(run.left[i + q], run.plane[i + q], run.right[i + q]);
+      fastest_squared = max(fastest_squared, symmetric_square(transpose_times(rotation, rate)));
+    });
+    i += element.points;
   }
 }
 
@@ -137,13 +137,14 @@ EVERT_STAGE void kept_strain_rate_stage(const BlockArrays& block, const double* 
     const DampingState<T, element, rotated> state(block, b);
     const auto edges = batch.edges_of(v);
     if constexpr (keeps_rotated_gradients<element, rotated>) {
-      const T volume = max(batch.volume(0), T(std::numeric_limits<double>::min()));  // 0 in padding lanes
-      fastest_squared = max(fastest_squared, symmetric_square(state.scaled_rate(edges)) / volume);
+      state.rotated_shape().field_gradients(edges, [&](std::size_t q, const Mat3<T>& scaled_rate) {
+        const T volume = max(batch.volume(q), T(std::numeric_limits<double>::min()));  // 0 in padding lanes
+        fastest_squared = max(fastest_squared, symmetric_square(scaled_rate) / volume);
+      });
     } else {
-      for (std::size_t q = 0; q < batch.points; ++q)
-        fastest_squared =
-            max(fastest_squared,
-                symmetric_square(transpose_times(state.frame(q), batch.field_gradient(edges, q))));
+      batch.shape.field_gradients(edges, [&](std::size_t q, const Mat3<T>& rate) {
+        fastest_squared = max(fastest_squared, symmetric_square(transpose_times(state.frame(q), rate)));
+      });
     }
   }
 }

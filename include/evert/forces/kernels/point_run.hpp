@@ -40,8 +40,9 @@ EVERT_STAGE void gather_field_gradients(const BlockArrays& block, const double* 
                                         Mat3<T>* gradients) {
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const CellBatch<T, element> batch(block, b);
-    const auto edges = batch.edges_of(field);
-    for (std::size_t q = 0; q < batch.points; ++q) *gradients++ = batch.field_gradient(edges, q);
+    batch.shape.field_gradients(batch.edges_of(field),
+                                [&](std::size_t q, const Mat3<T>& gradient) { gradients[q] = gradient; });
+    gradients += batch.points;
   }
 }
 
