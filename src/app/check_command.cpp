@@ -160,7 +160,8 @@ void report_cost(Report& report, const SceneConfig& scene, Simulation& simulatio
                 formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
                     (scene.integrator.time_step ? ", fixed" : ", automatic, as the initial state suggests"));
   }
-  report.line("steps", formatted("about %.3g to the end time, %g s", steps, scene.end_time));
+  const char* more = scene.integrator.time_step ? "" : "; more where bodies deform strongly";
+  report.line("steps", formatted("about %.0f to the end time, %g s%s", steps, scene.end_time, more));
   if (const auto rate = scene.output.frames_per_second)
     report.line("frames", formatted("%.0f to ", std::floor(scene.end_time * *rate * (1 + 1e-12)) + 1) +
                               scene.output.directory);
@@ -172,18 +173,18 @@ void report_cost(Report& report, const SceneConfig& scene, Simulation& simulatio
   constexpr double mega = 1e6;
   report.line("memory", formatted("%.1f MB, of which element data %.1f MB", resident / mega,
                                   static_cast<double>(simulation.elastic().memory()) / mega));
-  report.line("cost", formatted("%.2g s a step on one rank, so about ", step_seconds) +
-                          duration_text(steps * step_seconds) + " without output");
+  report.line("cost", formatted("%.2g s a step on one rank: about ", step_seconds) +
+                          duration_text(steps * step_seconds) + " for these steps, without output");
 }
 
 }  // namespace
 
 int check_command(std::span<const std::string> arguments, std::ostream& out) {
-  const auto run = parse_run_arguments(arguments);
-  if (run.help) {
-    out << run_usage();
+  if (asks_for_help(arguments)) {
+    out << check_usage();
     return 0;
   }
+  const auto run = parse_run_arguments(arguments, "check");
   const auto scene = load_scene(PETSC_COMM_SELF, run.scene, run.overrides);
   apply_petsc_block(scene);
   const auto built = build_scene(PETSC_COMM_SELF, scene);

@@ -2,6 +2,8 @@
 
 #include "evert/core/error.hpp"
 
+#include <algorithm>
+
 namespace evert {
 namespace {
 
@@ -20,13 +22,19 @@ bool ends_with_yaml(const std::string& argument) {
 
 }  // namespace
 
-RunArguments parse_run_arguments(std::span<const std::string> arguments) {
+bool asks_for_help(std::span<const std::string> arguments) {
+  return std::ranges::any_of(arguments, [](const std::string& argument) {
+    return argument == "-h" || argument == "-help" || argument == "--help";
+  });
+}
+
+RunArguments parse_run_arguments(std::span<const std::string> arguments, const std::string& command) {
   RunArguments run;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const auto name = option_name(arguments[i]);
     const auto value = [&]() -> const std::string& {
       if (i + 1 >= arguments.size())
-        throw UserError("-" + name + " needs a value: evert run -help shows which");
+        throw UserError("-" + name + " needs a value: evert " + command + " -help shows which");
       return arguments[++i];
     };
     if (name == "set") {
@@ -41,7 +49,8 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments) {
       run.allow_unknown_options = true;
     } else if (name == "help" || name == "h") {
       run.help = true;
-      run.petsc.emplace_back("-help");
+      // PETSc's handler of signals would report a crash where a pager is closed early.
+      run.petsc.insert(run.petsc.end(), {"-help", "-no_signal_handler"});
     } else if (!name.empty()) {
       // What follows one of PETSc's options is its value, unless it looks like the scene.
       run.petsc.push_back("-" + name);
@@ -51,36 +60,52 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments) {
     } else if (run.scene.empty()) {
       run.scene = arguments[i];
     } else {
-      throw UserError("'" + arguments[i] + "' is one argument too many: evert run takes one scene, '" +
-                      run.scene + "', and then options");
+      throw UserError("'" + arguments[i] + "' is one argument too many: evert " + command +
+                      " takes one scene, '" + run.scene + "', and then options");
     }
   }
-  if (run.scene.empty() && !run.help) throw UserError("evert run needs a scene file: evert run scene.yaml");
+  if (run.scene.empty() && !run.help)
+    throw UserError("evert " + command + " needs a scene file: evert " + command + " scene.yaml");
   return run;
 }
 
 std::string usage() {
-  return R"(evert: simulates deformable solids that may flatten, invert and recover.
+  return R"(evert: simulates deformable solids that may flatten, invert and recover
 
-  evert run scene.yaml [-set key=value] [PETSc options]   simulate; mpirun -n 4 evert run ... in parallel
-  evert check scene.yaml [-set key=value]                 validate without running: what would be built
-  evert explain [key]                                     the scene reference
-  evert mesh generate|convert|quality|partition           make and examine meshes
-  evert view run.h5                                       a web page that plays the frames of a run
-  evert bench kernels                                     how fast the kernels are on this machine
-  evert run -help                                         every option of a run
+  evert run SCENE.yaml       simulate; on 4 ranks: mpirun -n 4 evert run SCENE.yaml
+  evert check SCENE.yaml     say what would be built and what it would cost, and run nothing
+  evert view RUN.h5          make a web page that plays a run
+  evert explain [KEY]        say what a key of a scene means, or list all
+  evert mesh COMMAND ...     generate, convert, judge or partition a mesh
+  evert bench COMMAND ...    measure kernels and steps on this machine
+  evert COMMAND --help       the options of a command
   evert --version
 
-Examples stand in examples/, the documentation in docs/.
+First steps:
+  evert run examples/torus_puddle/scene.yaml
+  evert view runs/torus_puddle/run.h5
+
+Scenes to start from stand in examples/, the documentation in docs/.
+)";
+}
+
+std::string check_usage() {
+  return R"(evert check SCENE.yaml [options]: builds everything that a run would, and runs nothing
+
+  -set key=value             override a value of the scene, as in evert run; repeatable
+  -allow_unknown_options     do not stop at PETSc options that nothing reads
+  Solver options are checked as evert run would read them: see evert run --help
+
+Says what bodies, cells, obstacles and events there are, the time step, and what memory and time to expect.
 )";
 }
 
 std::string run_usage() {
-  return R"(evert run scene.yaml [options]
+  return R"(evert run SCENE.yaml [options]: simulates, and writes frames, energies and a summary
 
   -set key=value             override a value of the scene, e.g. -set integrator.time_step=1e-4; repeatable
-  -restart file              go on from a checkpoint of the same scene, on any number of ranks
   -output directory          instead of the scene's output.directory
+  -restart file              go on from a checkpoint of the same scene, on any number of ranks
   -quiet                     no progress, errors only
   -allow_unknown_options     do not stop at PETSc options that nothing reads
 

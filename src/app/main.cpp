@@ -14,6 +14,7 @@
 
 #include <petscsys.h>
 
+#include <csignal>
 #include <cstdio>
 #include <functional>
 #include <iostream>
@@ -84,6 +85,8 @@ Arguments petsc_options(const std::string& command, const Arguments& arguments) 
   const bool runs_steps = command == "bench" && !arguments.empty() && arguments.front() == "step";
   if (command != "run" && command != "check" && !runs_steps) return {};
   try {
+    // `evert check` describes itself, without PETSc's pages.
+    if (command == "check" && evert::asks_for_help(arguments)) return {};
     return evert::parse_run_arguments(std::span(arguments).subspan(runs_steps ? 1 : 0)).petsc;
   } catch (const evert::UserError&) {
     return {};
@@ -116,6 +119,7 @@ int main(int argc, char** argv) {
   evert::use_one_blas_thread();
   const auto help = evert::run_usage();
   if (initialize_petsc(argv[0], petsc_options(command, arguments), help.c_str()) != 0) return bug;
+  std::signal(SIGPIPE, SIG_DFL);  // PETSc would report a crash after `evert explain | head`
   evert::register_log_events();
   const int code = guarded(command, arguments);
   std::cout.flush();

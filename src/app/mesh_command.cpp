@@ -1,5 +1,6 @@
 #include "evert/app/mesh_command.hpp"
 
+#include "evert/app/command_line.hpp"
 #include "evert/core/error.hpp"
 #include "evert/mesh/mesh_reader.hpp"
 #include "evert/mesh/mesh_writer.hpp"
@@ -10,7 +11,6 @@
 
 #include "command_options.hpp"
 #include "mesh_shapes.hpp"
-#include <algorithm>
 #include <fstream>
 #include <iomanip>
 #include <vector>
@@ -118,10 +118,7 @@ int partition_command(std::span<const std::string> arguments, std::ostream& out)
 
 int mesh_command(std::span<const std::string> arguments, std::ostream& out) {
   const std::vector<std::string> commands{"generate", "convert", "quality", "partition"};
-  const auto asks_for_help = [](const std::string& word) {
-    return word == "-h" || word == "-help" || word == "--help";
-  };
-  if (std::ranges::any_of(arguments, asks_for_help)) {
+  if (asks_for_help(arguments)) {
     out << help;
     return 0;
   }

@@ -1,5 +1,6 @@
 #include "evert/app/view_command.hpp"
 
+#include "evert/app/command_line.hpp"
 #include "evert/core/error.hpp"
 #include "evert/io/files.hpp"
 #include "evert/io/html_view.hpp"
@@ -11,6 +12,17 @@
 
 namespace evert {
 namespace {
+
+constexpr const char* help =
+    R"(evert view RUN.h5 [options]: makes one web page that plays the frames of a run in any browser
+
+  -o page.html               where to write; beside the run unless given
+  -frames 240                at most so many frames, evenly spaced
+  -max_triangles 100000      larger surfaces are simplified
+  -up y                      the axis that points up: x, y or z
+
+The page needs neither a network nor anything installed, and can be mailed.
+)";
 
 struct ViewArguments {
   std::string run;
@@ -76,6 +88,10 @@ std::string title_of(const std::filesystem::path& run) {
 }  // namespace
 
 int view_command(std::span<const std::string> arguments, std::ostream& out) {
+  if (asks_for_help(arguments)) {
+    out << help;
+    return 0;
+  }
   auto [run_path, page_path, options] = parsed(arguments);
   require_file(run_path);
   std::error_code none;

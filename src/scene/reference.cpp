@@ -5,6 +5,7 @@
 #include "tables.hpp"
 #include <algorithm>
 #include <map>
+#include <sstream>
 #include <vector>
 
 namespace evert {
@@ -16,6 +17,9 @@ using schema::TableInfo;
 using schema::TypeInfo;
 
 using Path = std::vector<std::string>;
+
+/// What stands for the default of a key that chooses between alternatives.
+constexpr std::string_view one_of_several = "one of several";
 
 /// A key and where it stands.
 struct Entry {
@@ -68,7 +72,7 @@ std::vector<KeyInfo> keys_of(const AlternativeInfo& alternative) {
   for (auto& key : keys) {
     if (alternative.by_tag || key.name != alternative.name) continue;
     key.required = false;
-    key.default_text = "one of several";
+    key.default_text = one_of_several;
   }
   return keys;
 }
@@ -143,7 +147,42 @@ void append_details(std::string& out, const Entry& entry) {
   append_line(out, "example", key.name + ": " + key.example);
   for (const auto& choice : key.type.choices) append_line(out, "", padded(choice.word, 22) + choice.help);
   if (key.type.table == nullptr) return;
-  append_line(out, "keys", list_of(key.type.table->key_names()));
+  std::string keys;
+  for (const auto& name : key.type.table->key_names()) keys += (keys.empty() ? "" : ", ") + name;
+  append_line(out, "keys", keys);
+}
+
+// --- all keys
+
+/// Adds the words of `text` to a line that has `column` characters; the lines that follow begin there too.
+void append_wrapped(std::string& out, const std::string& text, std::size_t column) {
+  constexpr std::size_t width = 100;
+  std::istringstream words(text);
+  std::size_t at = column;
+  for (std::string word; words >> word;) {
+    if (at > column && at + 1 + word.size() > width) {
+      out += "\n" + std::string(column, ' ');
+      at = column;
+    } else if (at > column) {
+      out += ' ';
+      ++at;
+    }
+    out += word;
+    at += word.size();
+  }
+  out += '\n';
+}
+
+void append_tree_line(std::string& out, const std::string& indent, const KeyInfo& key) {
+  constexpr std::size_t column = 38;
+  const auto unit = key.type.unit.empty() ? "" : " [" + key.type.unit + "]";
+  out += padded(indent + key.name + (key.required ? "*" : "") + unit, column);
+  std::string text = key.help;
+  if (!key.type.choices.empty()) text += " One of " + allowed_text(key.type) + ".";
+  const bool has_default = !key.required && !key.default_text.empty() && key.default_text != "[]" &&
+                           key.default_text != one_of_several;
+  if (has_default) text += " Default: " + key.default_text + ".";
+  append_wrapped(out, text, column);
 }
 
 // --- the page
@@ -215,13 +254,15 @@ class Page {
 }  // namespace
 
 std::string reference_tree() {
-  std::string out;
-  visit_all(scene_table().info(), {}, [&out](const Entry& entry) {
+  std::string out =
+      "Every key of a scene; * marks those that must be given. 'evert explain KEY' says more.\n\n";
+  std::string alternative;
+  visit_all(scene_table().info(), {}, [&](const Entry& entry) {
     const auto indent = std::string(2 * (entry.path.size() - 1), ' ');
-    const auto& alternative = entry.alternative;
-    out += padded(indent + entry.key.name, 34) + padded(type_text(entry.key.type), 28) +
-           padded(default_text(entry.key), 12) + entry.key.help +
-           (alternative.empty() ? "" : " (with " + alternative + ")") + "\n";
+    if (entry.alternative != alternative && !entry.alternative.empty())
+      out += indent + "with " + entry.alternative + "\n";
+    alternative = entry.alternative;
+    append_tree_line(out, indent + (alternative.empty() ? "" : "  "), entry.key);
     if (below(entry) != entry.path && entry.key.type.table != nullptr)
       out += indent + "  " + placeholder(entry.key.type) + "\n";
   });

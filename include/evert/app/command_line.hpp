@@ -17,12 +17,18 @@ struct RunArguments {
   std::vector<std::string> petsc;      ///< everything else, in order
 };
 
-/// Takes the arguments after `evert run` apart; options may be written with one dash or two. Throws UserError
-/// when a value is missing or there is not exactly one scene.
-[[nodiscard]] RunArguments parse_run_arguments(std::span<const std::string> arguments);
+/// Whether -h, -help or --help is among them.
+[[nodiscard]] bool asks_for_help(std::span<const std::string> arguments);
+
+/// Takes the arguments after `evert run`, or another `command` that takes the same, apart; options may be
+/// written with one dash or two. Throws UserError when a value is missing or there is not exactly one scene.
+[[nodiscard]] RunArguments parse_run_arguments(std::span<const std::string> arguments,
+                                               const std::string& command = "run");
 
 /// What `evert --help` prints.
 [[nodiscard]] std::string usage();
+/// What `evert check -help` prints.
+[[nodiscard]] std::string check_usage();
 /// What `evert run -help` prints before PETSc's own options.
 [[nodiscard]] std::string run_usage();
 
