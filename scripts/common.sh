@@ -23,8 +23,10 @@ quietly() {
   fi
 }
 
-# Root may start ranks (containers), more ranks than cores are no error, one thread a rank.
+# Root may start ranks (containers), more ranks than cores are no error, one thread a rank, no writable /dev/shm and no
+# /sys are needed.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 export OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMPI_MCA_sharedfp=^sm HWLOC_HIDE_ERRORS=2
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

@@ -16,6 +16,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -117,6 +118,9 @@ int main(int argc, char** argv) {
   }
   arguments.erase(arguments.begin());
   evert::use_one_blas_thread();
+  // Open MPI would keep shared file pointers, which nothing here uses, in /dev/shm, and could open no file
+  // for a user who may not write there.
+  setenv("OMPI_MCA_sharedfp", "^sm", 0);
   const auto help = evert::run_usage();
   if (initialize_petsc(argv[0], petsc_options(command, arguments), help.c_str()) != 0) return bug;
   std::signal(SIGPIPE, SIG_DFL);  // PETSc would report a crash after `evert explain | head`
