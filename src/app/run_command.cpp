@@ -13,6 +13,7 @@
 #include "evert/sim/shape_error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <numeric>
@@ -123,18 +124,27 @@ RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Ob
   return summary;
 }
 
+std::string inversion_text(const RunSummary& summary) {
+  if (summary.max_inverted_points == 0) return "no element at any time";
+  const auto left = summary.final_state.inverted_points;
+  std::array<char, 96> most{};
+  std::snprintf(most.data(), most.size(), "at most %.1f %%, at t = %.3g s; ",
+                100 * static_cast<double>(summary.max_inverted_points) /
+                    static_cast<double>(std::max<GlobalIndex>(summary.quadrature_points, 1)),
+                summary.max_inverted_time);
+  return most.data() + (left == 0 ? "none" : std::to_string(left)) + " at the end";
+}
+
 /// The closing lines: what happened, and where it is.
 void print_outcome(const RunSummary& summary, const RunFiles& files) {
-  const double points = static_cast<double>(std::max<GlobalIndex>(summary.quadrature_points, 1));
-  std::printf(
-      "%s: %s at t = %g s after %lld steps, %s; inverted: at most %.1f %% (t = %.3g s), %lld at the end\n",
-      summary.scene.c_str(), summary.outcome.c_str(), summary.simulated_time,
-      static_cast<long long>(summary.steps), duration_text(summary.wall_time).c_str(),
-      100 * static_cast<double>(summary.max_inverted_points) / points, summary.max_inverted_time,
-      static_cast<long long>(summary.final_state.inverted_points));
+  std::printf("%s %s at t = %g s, %lld steps in %s\n", summary.scene.c_str(), summary.outcome.c_str(),
+              summary.simulated_time, static_cast<long long>(summary.steps),
+              duration_text(summary.wall_time).c_str());
+  std::printf("  inverted    %s\n", inversion_text(summary).c_str());
   for (const auto& [body, error] : summary.shape_errors)
-    std::printf("  %s: rms distance to its rest shape %.3g m\n", body.c_str(), error);
-  std::printf("  written to %s\n", files.directory.c_str());
+    std::printf("  shape       %s: %.3g m RMS from its rest shape\n", body.c_str(), error);
+  std::printf("  written to  %s\n", files.directory.c_str());
+  if (summary.frames > 0) std::printf("  to see it   evert view %s\n", files("run.h5").c_str());
 }
 
 int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) {

@@ -87,16 +87,16 @@ std::string Progress::line(const ProgressState& state, Clock::time_point now) co
   const double advanced = state.time - begin_.time;
   const auto steps = state.steps - shown_.steps;
   const double since_shown = Seconds(now - shown_at_).count();
-  std::string text = formatted("t = %.4g of %.4g s (%.0f %%)  %lld steps", state.time, end_,
-                               100 * state.time / end_, static_cast<long long>(state.steps));
+  std::string text = formatted("%3.0f %%  t = %.4g of %.4g s  %lld steps", 100 * state.time / end_,
+                               state.time, end_, static_cast<long long>(state.steps));
   if (steps > 0 && since_shown > 0) text += formatted(", %.3g/s", static_cast<double>(steps) / since_shown);
   if (state.time < end_) {
-    if (advanced > 0) text += "  left " + duration_text((end_ - state.time) * wall / advanced);
+    if (advanced > 0) text += "  " + duration_text((end_ - state.time) * wall / advanced) + " left";
   } else {
     text += "  in " + duration_text(wall);
   }
-  text += formatted("  inverted %lld", static_cast<long long>(state.inverted));
-  if (steps > 0)
+  text += formatted("  %lld inverted", static_cast<long long>(state.inverted));
+  if (state.cg_iterations > begin_.cg_iterations && steps > 0)  // none where nothing is damped
     text += formatted("  CG %.1f/step", static_cast<double>(state.cg_iterations - shown_.cg_iterations) /
                                             static_cast<double>(steps));
   return text;

@@ -43,9 +43,9 @@ TEST(Progress, LinesTellTimeStepsRateRemainingInversionAndIterations) {
   progress.show({1.0, 300, 0, 1050}, begin + 20s);
   progress.finish({2.0, 500, 0, 1450}, begin + 30s);
   EXPECT_EQ(out.text(),
-            on_rank_0("t = 0.5 of 2 s (25 %)  100 steps, 10/s  left 30 s  inverted 7  CG 4.5/step\n"
-                      "t = 1 of 2 s (50 %)  300 steps, 20/s  left 20 s  inverted 0  CG 3.0/step\n"
-                      "t = 2 of 2 s (100 %)  500 steps, 20/s  in 30 s  inverted 0  CG 2.0/step\n"));
+            on_rank_0(" 25 %  t = 0.5 of 2 s  100 steps, 10/s  30 s left  7 inverted  CG 4.5/step\n"
+                      " 50 %  t = 1 of 2 s  300 steps, 20/s  20 s left  0 inverted  CG 3.0/step\n"
+                      "100 %  t = 2 of 2 s  500 steps, 20/s  in 30 s  0 inverted  CG 2.0/step\n"));
 }
 
 TEST(Progress, ARestartCountsOnlyItsOwnPace) {
@@ -54,7 +54,14 @@ TEST(Progress, ARestartCountsOnlyItsOwnPace) {
   progress.show({1.5, 1010, 0, 10}, begin + 60s);
   EXPECT_EQ(
       out.text(),
-      on_rank_0("t = 1.5 of 2 s (75 %)  1010 steps, 0.167/s  left 1 min 0 s  inverted 0  CG 1.0/step\n"));
+      on_rank_0(" 75 %  t = 1.5 of 2 s  1010 steps, 0.167/s  1 min 0 s left  0 inverted  CG 1.0/step\n"));
+}
+
+TEST(Progress, SaysNothingOfIterationsWhereNothingIsSolved) {
+  const Captured out;
+  Progress progress(world, ProgressStyle::lines, {}, 2.0, out.file(), begin);
+  progress.show({1.0, 10, 0, 0}, begin + 1s);
+  EXPECT_EQ(out.text(), on_rank_0(" 50 %  t = 1 of 2 s  10 steps, 10/s  1 s left  0 inverted\n"));
 }
 
 TEST(Progress, ATerminalLineIsWrittenOverAndEndsOnce) {
@@ -62,8 +69,8 @@ TEST(Progress, ATerminalLineIsWrittenOverAndEndsOnce) {
   Progress progress(world, ProgressStyle::rewriting, {}, 2.0, out.file(), begin);
   progress.show({1.0, 0, 0, 0}, begin + 1s);
   progress.finish({2.0, 0, 0, 0}, begin + 2s);
-  EXPECT_EQ(out.text(), on_rank_0("\rt = 1 of 2 s (50 %)  0 steps  left 1 s  inverted 0\x1b[K"
-                                  "\rt = 2 of 2 s (100 %)  0 steps  in 2 s  inverted 0\x1b[K\n"));
+  EXPECT_EQ(out.text(), on_rank_0("\r 50 %  t = 1 of 2 s  0 steps  1 s left  0 inverted\x1b[K"
+                                  "\r100 %  t = 2 of 2 s  0 steps  in 2 s  0 inverted\x1b[K\n"));
 }
 
 TEST(Progress, SilentSaysNothing) {
