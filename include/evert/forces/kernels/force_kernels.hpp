@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/forces/kernels/damping_kernels.hpp"
+#include "evert/forces/kernels/general_stress.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/materials/material.hpp"
 
@@ -20,32 +21,57 @@ EVERT_STAGE void principal_stress_stage(const Model& model, const BlockArrays& b
   }
 }
 
-/// f −= G = U P̂ Vᵀ B_m.  paper A, eq. (2)
-template <Real T, const auto& element>
-EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches, const PointRun<T>& run,
-                                   double* f) {
+/// f −= G = P B_m, with `stress_of(i)` = −|∂X/∂ξ| W P at point i of the run.
+template <Real T, const auto& element, class StressOf>
+EVERT_ALWAYS_INLINE void add_nodal_forces(const BlockArrays& block, BatchRange batches, double* f,
+                                          StressOf&& stress_of) {
   std::size_t first = 0;
   for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
     const CellBatch<T, element> batch(block, b);
-    const auto forces = batch.shape.nodal_sums([&](std::size_t q) {
-      const std::size_t i = first + q;
-      return isotropic_tensor(run.left[i], run.plane[i], run.right[i], run.principal[i]);
-    });
+    const auto forces = batch.shape.nodal_sums([&](std::size_t q) { return stress_of(first + q); });
     scatter_balanced<T, element.nodes>(forces, f, batch.nodes);
   }
+}
+
+/// f −= G = U P̂ Vᵀ B_m, P̂ diagonal.  paper A, eq. (2)
+template <Real T, const auto& element>
+EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches, const PointRun<T>& run,
+                                   double* f) {
+  add_nodal_forces<T, element>(block, batches, f, [&](std::size_t i) {
+    return isotropic_tensor(run.left[i], run.plane[i], run.right[i], run.principal[i]);
+  });
+}
+
+/// The same of stresses that are there already.
+template <Real T, const auto& element>
+EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches, const FramedRun<T>& framed,
+                                   double* f) {
+  add_nodal_forces<T, element>(block, batches, f, [&](std::size_t i) { return framed.stress[i]; });
+}
+
+/// Elastic forces of any model; keeps what the damping needs.
+template <Real T, const auto& element, DampingModel damping, class Model>
+EVERT_ALWAYS_INLINE void add_forces(const Model& model, const BlockArrays& block, const double* x, double* f,
+                                    BatchRange batches) {
+  for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
+    diagonalize(run, points);
+    if constexpr (NeedsFrames<Model>) {
+      FramedRun<T> framed;
+      general_stress<T, element>(model, block, piece, run, points, framed);
+      nodal_force_stage<T, element>(block, piece, framed, f);
+    } else {
+      principal_stress_stage<T, element>(model, block, piece, run);
+      nodal_force_stage<T, element>(block, piece, run, f);
+    }
+    if constexpr (damping != DampingModel::none) keep_damping_state<T, element, damping>(block, piece, run);
+  });
 }
 
 /// See ElasticBlock::update.
 template <Real T, const auto& element, class Model, DampingModel damping>
 void update(const BlockArrays& block, const Material& material, const double* x, double* f,
             BatchRange batches) {
-  const Model model = model_of<Model>(material);
-  for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
-    diagonalize(run, points);
-    principal_stress_stage<T, element>(model, block, piece, run);
-    nodal_force_stage<T, element>(block, piece, run, f);
-    if constexpr (damping != DampingModel::none) keep_damping_state<T, element, damping>(block, piece, run);
-  });
+  add_forces<T, element, damping>(model_of<Model>(material), block, x, f, batches);
 }
 
 }  // namespace evert::kernels

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/damping_kernels.hpp"
+#include "evert/forces/kernels/general_stress.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/forces/kernels/tangent_bound.hpp"
 
@@ -28,19 +29,35 @@ EVERT_ALWAYS_INLINE double largest_lane(const T& x) {
   return -smallest_lane(-x);
 }
 
-/// See ElasticBlock::energy.
+/// ψ at point i of a diagonalised run.
+template <Real T, class Model>
+EVERT_ALWAYS_INLINE T energy_density(const Model& model, const PointRun<T>& run, std::size_t i) {
+  if constexpr (NeedsFrames<Model>) {
+    return model.energy(assemble_svd3(run.deflation(i)));
+  } else {
+    return model.energy(principal_stretches(run.plane[i]));
+  }
+}
+
+/// Elastic energy of any model [J].
 template <Real T, const auto& element, class Model>
-double energy(const BlockArrays& block, const Material& material, const double* x, BatchRange batches) {
-  const Model model = model_of<Model>(material);
+EVERT_ALWAYS_INLINE double sum_of_energy(const Model& model, const BlockArrays& block, const double* x,
+                                         BatchRange batches) {
   T sum = T(0.0);
   for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
     diagonalize(run, points);
     for (std::size_t i = 0; i < points; ++i) {
       const CellBatch<T, element> batch(block, piece.begin + static_cast<LocalIndex>(i / batch.points));
-      sum += batch.volume(i % batch.points) * model.energy(principal_stretches(run.plane[i]));
+      sum += batch.volume(i % batch.points) * energy_density(model, run, i);
     }
   });
   return sum_of_lanes(sum);
+}
+
+/// See ElasticBlock::energy.
+template <Real T, const auto& element, class Model>
+double energy(const BlockArrays& block, const Material& material, const double* x, BatchRange batches) {
+  return sum_of_energy<T, element>(model_of<Model>(material), block, x, batches);
 }
 
 /// The smallest signed principal stretch; 0 where it is zero to the rounding of the largest, whose sign is of
