@@ -5,6 +5,7 @@
 
 #include "tests/support/scenes.hpp"
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <numbers>
 #include <random>
@@ -50,6 +51,7 @@ std::string start_of(const std::string& kind, int seed) {
 struct Outcome {
   GlobalIndex inverted = 0;
   double shape_error = 0;
+  double kinetic_share = 0;  // of the kinetic and elastic energy
 };
 
 /// Runs until the shape is at rest to 1e-7, or long past the time that takes.
@@ -64,23 +66,34 @@ Outcome recover(const std::string& model, const std::string& mesh, const std::st
       simulation.next_event() < simulation.time() + dt ? simulation.step_to(simulation.next_event())
                                                        : simulation.step(dt);
     }
-    outcome = {simulation.inverted_points(),
-               rms_shape_error(simulation.mesh(), simulation.positions(), 0, simulation.mesh().total_nodes)};
+    outcome.inverted = simulation.inverted_points();
+    outcome.shape_error =
+        rms_shape_error(simulation.mesh(), simulation.positions(), 0, simulation.mesh().total_nodes);
     if (outcome.inverted == 0 && outcome.shape_error < 1e-7) break;
   }
+  const auto now = simulation.measure();
+  outcome.kinetic_share = now.kinetic_energy / (now.kinetic_energy + now.elastic_energy);
   return outcome;
 }
 
 // A high compression limit leaves no barrier in the way of an element that must pass through inversion to
-// untangle: docs/recovery.md tells what lower limits do.
+// untangle.
 const std::string neo_hookean =
     "{model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4, compression_limit: 0.9}";
 const std::string rotated_linear = "{model: rotated_linear, youngs_modulus: 1.0e5, poissons_ratio: 0.4}";
 const std::string st_venant_kirchhoff =
     "{model: st_venant_kirchhoff, youngs_modulus: 1.0e5, poissons_ratio: 0.4, compression_limit: 0.9}";
 
+// The limit that a scene gets when it says nothing, 0.3.
+const std::string neo_hookean_default = "{model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4}";
+
 /// A few in every run of the suite; EVERT_ALL_SEEDS=1 tries them all, which takes some minutes.
 int seeds_to_try() { return std::getenv("EVERT_ALL_SEEDS") != nullptr ? seeds : 3; }
+
+bool has_recovered(const Outcome& outcome) { return outcome.inverted == 0 && outcome.shape_error < 1e-6; }
+
+/// A state of rest that is not the rest shape: nothing moves, and nodes are where they do not belong.
+bool is_tangled(const Outcome& outcome) { return outcome.shape_error > 0.01 && outcome.kinetic_share < 1e-6; }
 
 struct Case {
   const char* name;
@@ -100,19 +113,53 @@ TEST_P(Recovery, EndsAtRestWithNothingInverted) {
     }
 }
 
+std::string name_of(const testing::TestParamInfo<Case>& choice) {
+  return std::string(choice.param.name) + "_" + choice.param.kind;
+}
+
+class MayStick : public testing::TestWithParam<Case> {};
+
+/// Models and starts that may stick, at rest in another shape: docs/recovery.md names them and the states, as
+/// printed here.
+TEST_P(MayStick, EndsRecoveredOrTangled) {
+  const auto [name, model, kind] = GetParam();
+  int recovered = 0, tangled = 0;
+  for (const auto& mesh : meshes)
+    for (int seed = 1; seed <= seeds_to_try(); ++seed) {
+      const auto outcome = recover(model, mesh, kind, seed);
+      recovered += has_recovered(outcome) ? 1 : 0;
+      tangled += is_tangled(outcome) ? 1 : 0;
+      EXPECT_TRUE(has_recovered(outcome) || is_tangled(outcome))
+          << mesh << ", seed " << seed << ": RMS distance " << outcome.shape_error << ", kinetic share "
+          << outcome.kinetic_share;
+      if (!has_recovered(outcome))
+        std::printf("%s, %s, seed %d: %lld inverted, RMS distance %.2f m, %s\n", name, kind, seed,
+                    static_cast<long long>(outcome.inverted), outcome.shape_error, mesh.c_str());
+    }
+  std::printf("%s, %s: %d recovered, %d tangled\n", name, kind, recovered, tangled);
+}
+
+constexpr std::array starts{"scramble", "flatten_plane", "flatten_line", "flatten_point", "inside_out"};
+
+std::vector<Case> cases_that_may_stick() {
+  std::vector<Case> cases{{"rotated_linear", rotated_linear, "scramble"}};
+  for (const char* kind : starts) cases.push_back({"neo_hookean_default", neo_hookean_default, kind});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MayStick, testing::ValuesIn(cases_that_may_stick()), name_of);
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const char* kind : {"scramble", "flatten_plane", "flatten_line", "flatten_point", "inside_out"}) {
+  for (const char* kind : starts) {
     cases.push_back({"neo_hookean", neo_hookean, kind});
-    cases.push_back({"rotated_linear", rotated_linear, kind});
+    if (std::string(kind) != "scramble") cases.push_back({"rotated_linear", rotated_linear, kind});
     cases.push_back({"st_venant_kirchhoff", st_venant_kirchhoff, kind});
   }
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Recovery, testing::ValuesIn(all_cases()), [](const auto& choice) {
-  return std::string(choice.param.name) + "_" + choice.param.kind;
-});
+INSTANTIATE_TEST_SUITE_P(All, Recovery, testing::ValuesIn(all_cases()), name_of);
 
 }  // namespace
 }  // namespace evert
