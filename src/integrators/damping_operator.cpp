@@ -33,14 +33,7 @@ PetscErrorCode shell_inverse_block_diagonal(Mat mat, const PetscScalar** values)
 }
 
 PetscErrorCode shell_diagonal(Mat mat, Vec diagonal) {
-  return guarded([&] {
-    const auto& self = operator_of(mat);
-    const auto blocks = self.inverse_diagonal();
-    PetscScalar* values = nullptr;
-    check(VecGetArrayWrite(diagonal, &values));
-    for (std::size_t i = 0; i < blocks.size() / 3; ++i) values[i] = 1 / blocks[9 * (i / 3) + 4 * (i % 3)];
-    check(VecRestoreArrayWrite(diagonal, &values));
-  });
+  return guarded([&] { operator_of(mat).diagonal(diagonal); });
 }
 
 std::span<const double> read(Vec vec, std::size_t size) {
@@ -92,6 +85,7 @@ DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForce
     check(MatShellSetOperation(mat_.get(), operation, reinterpret_cast<void (*)()>(function)));
   };
   set(MATOP_MULT, shell_multiply);
+  set(MATOP_MULT_TRANSPOSE, shell_multiply);  // A is symmetric; asked for by bicg, lsqr, ...
   set(MATOP_GET_DIAGONAL, shell_diagonal);
   set(MATOP_INVERT_BLOCK_DIAGONAL, shell_inverse_block_diagonal);
 }
@@ -146,7 +140,9 @@ void DampingOperator::add_damping(Vec v, Vec out, double factor) const {
   check(VecRestoreArray(out, &result));
 }
 
-std::span<const double> DampingOperator::inverse_diagonal() const {
+/// work(node, block) for the 3×3 diagonal block of A at each owned node, by columns.
+template <class Work>
+void DampingOperator::for_each_diagonal_block(Work&& work) const {
   if (!diagonal_valid_) elastic_.damping_diagonal(diagonal_);
   diagonal_valid_ = true;
   const auto mass = elastic_.masses();
@@ -157,9 +153,24 @@ std::span<const double> DampingOperator::inverse_diagonal() const {
     if (constraint != constraints_.end() && static_cast<std::size_t>(constraint->node) == node)
       project_block((constraint++)->free, block.data());
     for (std::size_t k = 0; k < 9; k += 4) block[k] += mass[node];
-    invert_spd(block.data(), &inverse_diagonal_[9 * node]);
+    work(node, block);
   }
+}
+
+std::span<const double> DampingOperator::inverse_diagonal() const {
+  for_each_diagonal_block([&](std::size_t node, const std::array<double, 9>& block) {
+    invert_spd(block.data(), &inverse_diagonal_[9 * node]);
+  });
   return inverse_diagonal_;
+}
+
+void DampingOperator::diagonal(Vec out) const {
+  PetscScalar* values = nullptr;
+  check(VecGetArrayWrite(out, &values));
+  for_each_diagonal_block([&](std::size_t node, const std::array<double, 9>& block) {
+    for (std::size_t k = 0; k < 3; ++k) values[3 * node + k] = block[4 * k];
+  });
+  check(VecRestoreArrayWrite(out, &values));
 }
 
 }  // namespace evert

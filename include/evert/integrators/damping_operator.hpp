@@ -29,6 +29,8 @@ class DampingOperator {
   void add_damping(Vec v, Vec out, double factor) const;
   /// Collective. The inverses of A's owned 3×3 diagonal blocks, 9 numbers by columns each.
   [[nodiscard]] std::span<const double> inverse_diagonal() const;
+  /// Collective. `out` = A's diagonal.
+  void diagonal(Vec out) const;
 
   [[nodiscard]] double factor() const { return factor_; }
   [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }
@@ -39,6 +41,9 @@ class DampingOperator {
   [[nodiscard]] Mat mat() const { return mat_.get(); }
 
  private:
+  template <class Work>
+  void for_each_diagonal_block(Work&& work) const;
+
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
   double factor_ = 0;

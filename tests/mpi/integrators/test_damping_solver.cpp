@@ -134,6 +134,24 @@ INSTANTIATE_TEST_SUITE_P(
                     Choice{"sbaij", "jacobi"}, Choice{"sbaij", "bjacobi"}, Choice{"aij", "bjacobi"}),
     [](const auto& choice) { return std::string(choice.param.mat_type) + "_" + choice.param.pc_type; });
 
+TEST_F(DampedBox, DiagonalOfTheShellIsThatOfTheMatrix) {
+  DampingOperator shell(mesh_, elastic_);
+  const auto held = constraints();
+  shell.set(0.01, held);
+  AssembledDamping assembled(shell, MATAIJ);
+  assembled.assemble();
+  VecHandle difference, expected;
+  check(VecDuplicate(right_.get(), difference.out()));
+  check(VecDuplicate(right_.get(), expected.out()));
+  check(MatGetDiagonal(shell.mat(), difference.get()));
+  check(MatGetDiagonal(assembled.mat(), expected.get()));
+  check(VecAXPY(difference.get(), -1.0, expected.get()));
+  check(VecPointwiseDivide(difference.get(), difference.get(), expected.get()));
+  PetscReal largest = 0;
+  check(VecNorm(difference.get(), NORM_INFINITY, &largest));
+  EXPECT_LE(largest, 1e-13);  // sums of some ten cells' entries, all positive
+}
+
 TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
   const Option tolerance("-damping_ksp_rtol", "1e-13");
   DampingSolver solver(mesh_, elastic_);
