@@ -31,7 +31,6 @@ void FrameObserver::write(const Simulation& simulation) {
   // A restart begins at a frame that is there already.
   const auto frames = writer_.frames();
   if (!frames.empty() && frames.back().time >= simulation.time()) return;
-  const PhaseScope scope(Phase::io);
   writer_.write(
       {simulation.time(), simulation.steps(), simulation.positions(), simulation.velocities(),
        [&](std::size_t block, std::span<double> per_cell) { simulation.min_stretch(block, per_cell); }});
@@ -71,7 +70,6 @@ void CheckpointObserver::observe(Simulation& simulation, const StepReport& repor
 
 void CheckpointObserver::write(const Simulation& simulation) {
   if (written_at_ == simulation.time()) return;
-  const PhaseScope scope(Phase::io);
   writer_.write(simulation.positions().owned(), simulation.velocities().owned(), simulation.state_scalars());
   written_at_ = simulation.time();
   written_at_wall_ = MPI_Wtime();

@@ -9,12 +9,16 @@ constexpr std::array<std::string_view, phase_count> phase_names{
     "setup",         "force", "stretch_svd", "damping_apply", "damping_solve", "contact",
     "vector_update", "halo",  "io"};
 
+constexpr auto no_phase = static_cast<Phase>(phase_count);
+
 // PETSc's log is global to the process; so is ours.
 struct Log {
   std::array<PetscLogEvent, phase_count> events{};
   std::array<PetscLogStage, 2> stages{};
   std::array<double, phase_count> seconds{};
   std::array<std::int64_t, phase_count> calls{};
+  Phase now = no_phase;  // the innermost phase
+  double since = 0;      // wall time up to which it is booked [s]
   bool registered = false;
 };
 Log& log() {
@@ -23,6 +27,16 @@ Log& log() {
 }
 
 std::size_t index(Phase phase) { return static_cast<std::size_t>(phase); }
+
+/// Books the time until now to the phase that went on, and lets `next` go on. Returns the former.
+Phase change_to(Phase next) {
+  const double time = MPI_Wtime();
+  const auto before = log().now;
+  if (before != no_phase) log().seconds[index(before)] += time - log().since;
+  log().since = time;
+  log().now = next;
+  return before;
+}
 
 }  // namespace
 
@@ -48,7 +62,7 @@ StageScope::StageScope(Stage stage) {
 
 StageScope::~StageScope() { static_cast<void>(PetscLogStagePop()); }
 
-PhaseScope::PhaseScope(Phase phase, double flops) : phase_(phase), begin_(MPI_Wtime()) {
+PhaseScope::PhaseScope(Phase phase, double flops) : phase_(phase), outer_(change_to(phase)) {
   ++log().calls[index(phase)];
   if (!log().registered) return;
   PetscLogEventBegin(log().events[index(phase)], 0, 0, 0, 0);
@@ -56,8 +70,8 @@ PhaseScope::PhaseScope(Phase phase, double flops) : phase_(phase), begin_(MPI_Wt
 }
 
 PhaseScope::~PhaseScope() {
-  log().seconds[index(phase_)] += MPI_Wtime() - begin_;
   if (log().registered) PetscLogEventEnd(log().events[index(phase_)], 0, 0, 0, 0);
+  change_to(outer_);
 }
 
 const std::array<double, phase_count>& phase_seconds() { return log().seconds; }

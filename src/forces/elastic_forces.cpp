@@ -123,6 +123,7 @@ double ElasticForces::energy(const NodeField& x) const {
 }
 
 LocalIndex ElasticForces::inverted_points(const NodeField& x) const {
+  const PhaseScope scope(Phase::stretch_svd);
   LocalIndex sum = 0;
   for (const auto& block : blocks_)
     if (block != nullptr) sum += block->inverted_points(x.local().data());
@@ -143,6 +144,7 @@ StableStep ElasticForces::stable_step(const NodeField& x) const {
 }
 
 double ElasticForces::max_strain_rate(const NodeField& x, const NodeField& v) const {
+  const PhaseScope scope(Phase::stretch_svd);
   double largest = 0;
   for (const auto& block : blocks_)
     if (block != nullptr)

@@ -29,6 +29,7 @@ void change_vec(Vec vec, Work&& work) {
 template <class Value>
 void set_vec(Vec vec, Value&& value) {
   change_vec(vec, [&](std::span<double> values) {
+    const PhaseScope scope(Phase::vector_update, 3.0 * static_cast<double>(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(i, values[i]);
   });
 }
@@ -57,12 +58,9 @@ int Newmark::predict(System& system, double dt) {
   const auto mass = system.masses();
   const auto v = system.v.owned();
   const auto f = system.f.owned();
-  {
-    const PhaseScope scope(Phase::vector_update, 4.0 * static_cast<double>(v.size()));
-    set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
-    std::copy(v.begin(), v.end(), predicted_.owned().begin());
-    predicted_.touched();
-  }
+  set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
+  std::copy(v.begin(), v.end(), predicted_.owned().begin());
+  predicted_.touched();
   follow_forces(system);
   const int iterations =
       solver_.solve(dt / 2, right_.get(), predicted_, system.prescribed.at(system.time + dt / 2));

@@ -2,7 +2,6 @@
 
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
-#include "evert/core/log.hpp"
 #include "evert/io/files.hpp"
 
 #include "number_text.hpp"
@@ -97,7 +96,6 @@ void EnergyLog::append(const std::string& text) {
 }
 
 void EnergyLog::write(std::int64_t step, double time, const Measurements& measurements) {
-  const PhaseScope phase(Phase::io);
   on_root(comm_, [&] {
     std::string row = shortest(time) + ',' + std::to_string(step);
     for (const auto& column : columns) (row += ',') += shortest(column.value(measurements));

@@ -7,7 +7,8 @@
 #include <string_view>
 
 /// Where the time goes: one set of phases, shown by PETSc's -log_view and, without any option, in
-/// summary.json.
+/// summary.json. A phase inside another takes its time away from it, so that the seconds of all phases add up
+/// to no more than the wall time; -log_view counts it to both, as PETSc always does.
 namespace evert {
 
 enum class Phase : std::size_t {
@@ -15,10 +16,10 @@ enum class Phase : std::size_t {
   force,          ///< elastic forces: deformation gradients, their SVD, stresses, scatter
   stretch_svd,    ///< singular values for reports: minimum stretches, stable step
   damping_apply,  ///< products with the damping operator
-  damping_solve,  ///< the conjugate gradients around them, those products included
+  damping_solve,  ///< the conjugate gradients around them
   contact,        ///< obstacles and friction
   vector_update,  ///< nodal updates of positions and velocities
-  halo,           ///< waiting for ghost values
+  halo,           ///< sending ghost values, and waiting for them
   io,             ///< frames, logs and checkpoints
 };
 inline constexpr std::size_t phase_count = 9;
@@ -38,7 +39,7 @@ class StageScope {
   StageScope& operator=(const StageScope&) = delete;
 };
 
-/// Books the wall time of its life, and `flops`, to a phase.
+/// Books the wall time of its life, and `flops`, to a phase. Scopes must nest.
 class PhaseScope {
  public:
   explicit PhaseScope(Phase phase, double flops = 0);
@@ -48,10 +49,10 @@ class PhaseScope {
 
  private:
   Phase phase_;
-  double begin_;
+  Phase outer_;  // what went on before and goes on afterwards
 };
 
-/// Wall seconds of this rank booked to each phase so far.
+/// Wall seconds of this rank booked to each phase so far, phases inside it left out.
 [[nodiscard]] const std::array<double, phase_count>& phase_seconds();
 /// How often each phase began so far.
 [[nodiscard]] const std::array<std::int64_t, phase_count>& phase_calls();

@@ -1,5 +1,6 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
+#include "evert/core/log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,24 @@ TEST(Simulation, AllRanksLearnThatOneWantsToStop) {
   EXPECT_FALSE(built.simulation->step(1e-3).stop_requested);
   if (on_last_rank()) built.simulation->request_stop();
   EXPECT_TRUE(built.simulation->step(1e-3).stop_requested);
+}
+
+TEST(Simulation, PhasesAddUpToNoMoreThanTheWallTime) {
+  const auto before = phase_seconds();
+  const double begin = MPI_Wtime();
+  const auto built =
+      test::build(scene, {"bodies.cube.damping={model: rotated, stiffness_proportional: 0.01}"});
+  for (int step = 0; step < 5; ++step) built.simulation->step(1e-3);
+  static_cast<void>(built.simulation->measure());
+  const double wall = MPI_Wtime() - begin;
+  double sum = 0;
+  std::array<double, phase_count> spent{};
+  for (std::size_t phase = 0; phase < phase_count; ++phase)
+    sum += spent[phase] = phase_seconds()[phase] - before[phase];
+  EXPECT_LE(sum, wall);
+  for (const auto phase :
+       {Phase::setup, Phase::force, Phase::damping_apply, Phase::damping_solve, Phase::halo})
+    EXPECT_GT(spent[static_cast<std::size_t>(phase)], 0) << name_of(phase);
 }
 
 }  // namespace
