@@ -1,6 +1,7 @@
 #include "evert/app/check_command.hpp"
 
 #include "evert/app/command_line.hpp"
+#include "evert/app/observer.hpp"
 #include "evert/core/petsc.hpp"
 #include "evert/scene/build.hpp"
 #include "evert/scene/load.hpp"
@@ -128,7 +129,7 @@ void set_regions(Simulation& simulation, const BodyConfig& body) {
   }
 }
 
-/// The automatic step between two events, as the initial state suggests it.
+/// The step between two events; an automatic one as the initial state suggests it.
 struct Stretch {
   double begin = 0;
   double dt = 0;
@@ -137,31 +138,57 @@ struct Stretch {
 std::vector<Stretch> time_steps(Simulation& simulation, SceneConfig scene) {
   std::vector<Stretch> out{{0, std::min(simulation.suggested_time_step(), scene.end_time)}};
   for (const auto& event : scene.events) {
-    if (event.at >= scene.end_time || event.target == EventTarget::gravity ||
-        event.target == EventTarget::friction)
-      continue;
+    if (event.at >= scene.end_time) continue;
     apply_event(scene, event);
-    set_regions(simulation, scene.bodies[event.owner]);
+    if (event.target != EventTarget::gravity && event.target != EventTarget::friction)
+      set_regions(simulation, scene.bodies[event.owner]);
     out.push_back({event.at, std::min(simulation.suggested_time_step(), scene.end_time)});
   }
   return out;
 }
 
+/// Times that the run hits exactly, besides those of events.
+std::vector<Schedule> stops_of(const SceneConfig& scene) {
+  std::vector<Schedule> stops;
+  if (const auto rate = scene.output.frames_per_second) stops.emplace_back(1 / *rate);
+  if (const auto interval = scene.output.energy_log; interval.value_or(0) > 0) stops.emplace_back(*interval);
+  if (scene.checkpoint && scene.checkpoint->every_simulated)
+    stops.emplace_back(*scene.checkpoint->every_simulated);
+  return stops;
+}
+
+/// Steps of at most `dt` from `begin` to `end`, as run_loop makes them: equal ones from stop to stop. Walks
+/// over some stops and takes the rest to be like them.
+double steps_between(double begin, double end, double dt, std::span<const Schedule> stops) {
+  constexpr int most_stops = 100'000;
+  double steps = 0;
+  double time = begin;
+  for (int i = 0; i < most_stops && time < end; ++i) {
+    double stop = end;
+    for (const auto& schedule : stops) stop = std::min(stop, schedule.next_after(time));
+    steps += std::max(1.0, std::ceil((stop - time) / dt - 1e-9));
+    time = stop;
+  }
+  return steps * (end - begin) / (time - begin);
+}
+
 void report_cost(Report& report, const SceneConfig& scene, Simulation& simulation) {
   const auto stretches = time_steps(simulation, scene);
+  const auto stops = stops_of(scene);
+  const bool fixed = scene.integrator.time_step.has_value();
   double steps = 0;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const double end = i + 1 < stretches.size() ? stretches[i + 1].begin : scene.end_time;
-    // frames are hit exactly: no step is longer than the time between them
-    const auto rate = scene.output.frames_per_second;
-    const double longest = rate ? std::min(stretches[i].dt, 1 / *rate) : stretches[i].dt;
-    steps += std::ceil((end - stretches[i].begin) / longest);
-    report.line("time step",
-                formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
-                    (scene.integrator.time_step ? ", fixed" : ", automatic, as the initial state suggests"));
+    if (end > stretches[i].begin) steps += steps_between(stretches[i].begin, end, stretches[i].dt, stops);
+    if (i > 0 && stretches[i].dt == stretches[i - 1].dt) continue;
+    report.line("time step", formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
+                                 (fixed ? ", fixed" : ", automatic, as the initial state suggests"));
   }
-  const char* more = scene.integrator.time_step ? "" : "; more where bodies deform strongly";
-  report.line("steps", formatted("about %.0f to the end time, %g s%s", steps, scene.end_time, more));
+  report.line("steps", formatted("%s %.6g to the end time, %g s: these, cut to hit frames, log rows, "
+                                 "checkpoints and events exactly",
+                                 fixed ? "about" : "at least", steps, scene.end_time));
+  if (!fixed)
+    report.line("steps", "more where elements stiffen or deform quickly (integrator.max_strain_increment)");
   if (const auto rate = scene.output.frames_per_second)
     report.line("frames", formatted("%.0f to ", std::floor(scene.end_time * *rate * (1 + 1e-12)) + 1) +
                               scene.output.directory);
@@ -173,8 +200,9 @@ void report_cost(Report& report, const SceneConfig& scene, Simulation& simulatio
   constexpr double mega = 1e6;
   report.line("memory", formatted("%.1f MB, of which element data %.1f MB", resident / mega,
                                   static_cast<double>(simulation.elastic().memory()) / mega));
-  report.line("cost", formatted("%.2g s a step on one rank: about ", step_seconds) +
-                          duration_text(steps * step_seconds) + " for these steps, without output");
+  report.line("cost", formatted("%.2g s a step at the start, on one rank: ", step_seconds) +
+                          duration_text(steps * step_seconds) +
+                          " for these steps; output and harder damping solves come on top");
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ void truncate(const fs::path& file, double fraction) {
   fs::resize_file(file, static_cast<std::uintmax_t>(static_cast<double>(fs::file_size(file)) * fraction));
 }
 
+const Edit halfway_event{"petsc:", "events: [{at: 5e-4, set: gravity, to: [0, 0, 0]}]\npetsc:"};
+
 const std::vector<Case> good_runs{
     {.name = "good_scene", .files = {scene()}, .exit_code = 0},
     {.name = "good_gmsh2", .files = {scene_with_mesh("cube.msh"), gmsh2()}, .exit_code = 0},
@@ -49,6 +51,17 @@ const std::vector<Case> good_runs{
      .files = {scene()},
      .exit_code = 0},
     {.name = "check", .command = "check scene.yaml", .files = {scene()}, .exit_code = 0, .says = {"48"}},
+    // 0.4 ms at most, from stop to stop: 0.5 and 0.5 ms around the event, 1 ms to the next frame.
+    {.name = "check_counts_steps",
+     .command = "check scene.yaml -set integrator.time_step=4e-4",
+     .files = {scene({halfway_event})},
+     .exit_code = 0,
+     .says = {"about 7 to the end time"}},
+    {.name = "run_makes_these_steps",
+     .command = "run scene.yaml -set integrator.time_step=4e-4",
+     .files = {scene({halfway_event})},
+     .exit_code = 0,
+     .says = {"after 7 steps"}},
     {.name = "quiet", .command = "run scene.yaml -quiet", .files = {scene()}, .exit_code = 0},
     {.name = "version", .command = "--version", .exit_code = 0, .says = {"evert "}},
     {.name = "help", .command = "run -help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
