@@ -3,6 +3,8 @@
 #include "evert/core/error.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 
 namespace evert {
 namespace {
@@ -18,6 +20,18 @@ std::string option_name(const std::string& argument) {
 
 bool ends_with_yaml(const std::string& argument) {
   return argument.ends_with(".yaml") || argument.ends_with(".yml");
+}
+
+/// As a POSIX shell reads it: in single quotes unless it is plain.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view plain = "_-+=.,:/@%";
+  const bool bare = std::all_of(word.begin(), word.end(), [&](unsigned char c) {
+    return (c < 0x80 && std::isalnum(c) != 0) || plain.find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (bare && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
 }
 
 }  // namespace
@@ -67,6 +81,18 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments, const s
   if (run.scene.empty() && !run.help)
     throw UserError("evert " + command + " needs a scene file: evert " + command + " scene.yaml");
   return run;
+}
+
+std::string restart_command(const RunArguments& run, const std::string& checkpoint) {
+  std::vector<std::string> words{"evert", "run", run.scene, "-restart", checkpoint};
+  for (const auto& override : run.overrides) words.insert(words.end(), {"-set", override});
+  if (!run.output.empty()) words.insert(words.end(), {"-output", run.output});
+  if (run.quiet) words.emplace_back("-quiet");
+  if (run.allow_unknown_options) words.emplace_back("-allow_unknown_options");
+  words.insert(words.end(), run.petsc.begin(), run.petsc.end());
+  std::string line;
+  for (const auto& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+  return line;
 }
 
 std::string usage() {

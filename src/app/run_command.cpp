@@ -169,8 +169,8 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
   if (rank_of(comm) != 0) return end == RunEnd::interrupted ? interrupted : done;
   if (!arguments.quiet) print_outcome(summary, files);
   if (end == RunEnd::reached_end_time) return done;
-  std::fprintf(stderr, "evert: interrupted at t = %g s; go on with: evert run %s -restart %s\n",
-               simulation.time(), arguments.scene.c_str(), files("checkpoint.h5").c_str());
+  std::fprintf(stderr, "evert: interrupted at t = %g s; go on with: %s\n", simulation.time(),
+               restart_command(arguments, files("checkpoint.h5")).c_str());
   return interrupted;
 }
 
