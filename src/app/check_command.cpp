@@ -215,6 +215,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
   const auto run = parse_run_arguments(arguments, "check");
   const auto scene = load_scene(PETSC_COMM_SELF, run.scene, run.overrides);
   apply_petsc_block(scene);
+  require_option_values(scene, run.petsc);
   const auto built = build_scene(PETSC_COMM_SELF, scene);
 
   Report report(out);
@@ -222,7 +223,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
   report_bodies(report, scene, built);
   report_surroundings(report, scene, built.simulation->mesh());
   report_cost(report, scene, *built.simulation);
-  reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options);
+  reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, built.simulation->elastic().damped());
   report.line("valid", "nothing wrong was found");
   return 0;
 }

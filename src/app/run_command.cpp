@@ -155,7 +155,7 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
     std::filesystem::remove(files("summary.json"));  // of a run before: must not speak for one that fails
   });
   auto built = build_scene(comm, scene);
-  reject_unused_options(comm, arguments.allow_unknown_options);
+  reject_unused_options(comm, arguments.allow_unknown_options, built.simulation->elastic().damped());
   auto& simulation = *built.simulation;
   if (!arguments.restart.empty()) restore(simulation, arguments.restart, scene.identity);
   auto observers = make_observers(scene, simulation, files, arguments);
@@ -184,6 +184,7 @@ int run_command(MPI_Comm comm, const RunArguments& arguments) {
   catch_signals();
   const auto scene = load_scene(comm, arguments.scene, arguments.overrides);
   apply_petsc_block(scene);
+  require_option_values(scene, arguments.petsc);
   return run(comm, scene, arguments);
 }
 

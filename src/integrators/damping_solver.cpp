@@ -3,6 +3,7 @@
 #include "evert/core/error.hpp"
 #include "evert/core/log.hpp"
 
+#include "damping_options.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,65 +32,6 @@ class VecView {
   std::size_t size_ = 0;
 };
 
-// In PETSc's own style, so that -help lists the option.
-PetscErrorCode read_matrix_type(MPI_Comm comm, char* text, std::size_t size) {
-  PetscFunctionBeginUser;
-  PetscOptionsBegin(comm, "damping_", "Operator of the damping solves", nullptr);
-  PetscCall(PetscOptionsString("-mat_type", "shell (matrix-free), baij, sbaij or aij", nullptr, text, text,
-                               size, nullptr));
-  PetscOptionsEnd();
-  PetscFunctionReturn(0);
-}
-
-std::string matrix_type_option(MPI_Comm comm) {
-  const std::array<std::string, 4> allowed{"shell", "baij", "sbaij", "aij"};
-  std::array<char, 64> text{"shell"};
-  check(read_matrix_type(comm, text.data(), text.size()));
-  const std::string type = text.data();
-  if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
-    throw UserError("-damping_mat_type " + type + " is not allowed: must be " + list_of(allowed) +
-                    did_you_mean(type, allowed));
-  return type;
-}
-
-/// PCs that get by without the entries of the matrix.
-void require_entries_for(KSP ksp, const std::string& matrix_type) {
-  PC pc = nullptr;
-  const char* type = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  check(PCGetType(pc, &type));
-  const std::string name = type == nullptr ? "none" : type;
-  const std::array<std::string, 5> matrix_free{"pbjacobi", "jacobi", "none", "shell", "mat"};
-  if (matrix_type == "shell" && std::find(matrix_free.begin(), matrix_free.end(), name) == matrix_free.end())
-    throw UserError("-damping_pc_type " + name +
-                    " needs the entries of the matrix: add -damping_mat_type baij, sbaij or aij");
-}
-
-/// GAMG keeps its first coarse spaces and eigenvalues unless told otherwise; ours change by orders of
-/// magnitude with the step and the material.
-void rebuild_multigrid(PC pc) {
-  PetscBool told = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, "damping_", "-pc_gamg_reuse_interpolation", &told));
-  if (told == PETSC_FALSE) check(PCGAMGSetReuseInterpolation(pc, PETSC_FALSE));
-}
-
-/// Conjugate gradients with our defaults, then the user's options.
-KspHandle configured_ksp(MPI_Comm comm, const std::string& matrix_type) {
-  KspHandle ksp;
-  check(KSPCreate(comm, ksp.out()));
-  check(KSPSetOptionsPrefix(ksp.get(), "damping_"));
-  check(KSPSetType(ksp.get(), KSPCG));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp.get(), &pc));
-  check(PCSetType(pc, matrix_type == "sbaij" ? PCJACOBI : PCPBJACOBI));
-  constexpr double default_rtol = 1e-8;  // what momentum is balanced to
-  check(KSPSetTolerances(ksp.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  check_options([&] { return KSPSetFromOptions(ksp.get()); });
-  require_entries_for(ksp.get(), matrix_type);
-  rebuild_multigrid(pc);
-  return ksp;
-}
-
 }  // namespace
 
 DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
@@ -103,30 +45,23 @@ DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& e
 
 void DampingSolver::create_ksp() {
   operator_ = std::make_unique<DampingOperator>(mesh_, elastic_);
-  const auto type = matrix_type_option(mesh_.comm);
+  const auto type = damping_matrix_type(mesh_.comm);
+  ksp_ = damping_ksp(mesh_.comm, type);
   if (type != "shell") assembled_ = std::make_unique<AssembledDamping>(*operator_, type.c_str());
   const Mat mat = assembled_ != nullptr ? assembled_->mat() : operator_->mat();
-  const auto with_operator = [&] {
-    auto ksp = configured_ksp(mesh_.comm, type);
-    check(KSPSetOperators(ksp.get(), mat, mat));
-    return ksp;
-  };
   if (assembled_ != nullptr) {
-    // Preconditioners of several parts read the options of their parts when they are first set up: once on
-    // trial, so that an option that nobody reads is noticed before the run.
     operator_->set(0, {});
     assembled_->assemble();
-    check(KSPSetUp(with_operator().get()));
+    try_set_up(mat, type);
   }
-  ksp_ = with_operator();
+  check(KSPSetOperators(ksp_.get(), mat, mat));
   check(KSPGetTolerances(ksp_.get(), &rtol_, &atol_, nullptr, nullptr));
   check(VecDuplicate(residual_.get(), last_.out()));
   check(VecDuplicate(residual_.get(), image_.out()));
 }
 
 void DampingSolver::print_options(MPI_Comm comm) {
-  const auto type = matrix_type_option(comm);
-  static_cast<void>(configured_ksp(comm, type));
+  static_cast<void>(damping_ksp(comm, damping_matrix_type(comm)));
 }
 
 void DampingSolver::invalidate() {

@@ -7,41 +7,58 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <vector>
+#include <cctype>
+#include <string_view>
 
 namespace evert {
 namespace {
 
-/// Read by PETSc before there is a scene: of no effect in a `petsc:` block.
-const std::vector<std::string> start_up_options{"help",        "info",         "log_view",    "malloc_debug",
-                                                "memory_view", "options_file", "options_left"};
+constexpr std::string_view solver_prefix = "damping_";
+
+/// Of the solves we make, without their prefix: options that mean nothing without a value.
+const std::vector<std::string> valued_options{"mat_type",
+                                              "ksp_type",
+                                              "ksp_rtol",
+                                              "ksp_atol",
+                                              "ksp_divtol",
+                                              "ksp_max_it",
+                                              "ksp_norm_type",
+                                              "pc_type",
+                                              "pc_hypre_type",
+                                              "pc_gamg_type",
+                                              "pc_gamg_threshold",
+                                              "pc_factor_levels",
+                                              "pc_factor_mat_ordering_type",
+                                              "sub_pc_type",
+                                              "sub_ksp_type",
+                                              "mg_levels_ksp_type",
+                                              "mg_levels_pc_type"};
+/// And those that may stand alone.
+const std::vector<std::string> flag_options{"ksp_monitor", "ksp_view", "ksp_converged_reason",
+                                            "ksp_initial_guess_nonzero"};
 
 /// Options worth a suggestion: those of the solves we make, and the ones of PETSc that users type.
 std::vector<std::string> well_known_options() {
-  auto names = start_up_options;
-  for (const auto* name : {"mat_type",
-                           "ksp_type",
-                           "ksp_rtol",
-                           "ksp_atol",
-                           "ksp_divtol",
-                           "ksp_max_it",
-                           "ksp_monitor",
-                           "ksp_view",
-                           "ksp_converged_reason",
-                           "ksp_norm_type",
-                           "ksp_initial_guess_nonzero",
-                           "pc_type",
-                           "pc_hypre_type",
-                           "pc_gamg_type",
-                           "pc_gamg_threshold",
-                           "pc_factor_levels",
-                           "pc_factor_mat_ordering_type",
-                           "sub_pc_type",
-                           "sub_ksp_type",
-                           "mg_levels_ksp_type",
-                           "mg_levels_pc_type"})
-    names.push_back("damping_" + std::string(name));
+  auto names = process_options();
+  for (const auto& list : {valued_options, flag_options})
+    for (const auto& name : list) names.push_back(std::string(solver_prefix) + name);
   return names;
+}
+
+bool contains(const std::vector<std::string>& list, std::string_view name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// -name, not a negative number.
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
+/// Throws when `name`, without dash, needs a value and has none.
+void require_value(const std::string& name, bool has_value, const std::string& shown) {
+  if (has_value || !name.starts_with(solver_prefix)) return;
+  if (contains(valued_options, name.substr(solver_prefix.size())))
+    throw UserError(shown + ": needs a value, but has none");
 }
 
 /// Options that were put into the database but never read, sorted so that every rank names the same one.
@@ -56,15 +73,24 @@ std::vector<std::string> unused_options() {
   return unused;
 }
 
-std::string complaint(const std::string& name, std::span<const std::string> known) {
-  if (std::find(start_up_options.begin(), start_up_options.end(), name) != start_up_options.end())
-    return "petsc." + name + ": must be given on the command line: PETSc reads it before there is a scene";
-  const auto match = nearest_match(name, known);
+std::string complaint(const std::string& name, bool damped) {
+  if (!damped && name.starts_with(solver_prefix))
+    return "-" + name + ": has no effect, since nothing in this scene is damped (bodies.NAME.damping)";
+  const auto match = nearest_match(name, well_known_options());
   return "-" + name + ": unknown option" + (match.empty() ? "" : " (did you mean '-" + match + "'?)") +
          "; -allow_unknown_options lets it pass";
 }
 
 }  // namespace
+
+const std::vector<std::string>& process_options() {
+  static const std::vector<std::string> names{
+      "citations",    "fp_trap",     "help",         "history",      "info",         "log_exclude",
+      "log_trace",    "log_view",    "malloc",       "malloc_debug", "malloc_dump",  "malloc_test",
+      "malloc_view",  "memory_view", "objects_dump", "options_file", "options_left", "options_monitor",
+      "options_view", "version"};
+  return names;
+}
 
 void apply_petsc_block(const SceneConfig& scene) {
   for (const auto& [name, value] : scene.petsc) {
@@ -76,16 +102,19 @@ void apply_petsc_block(const SceneConfig& scene) {
   }
 }
 
-void reject_unused_options(MPI_Comm comm, bool allow_unknown, std::span<const std::string> ours) {
+void require_option_values(const SceneConfig& scene, std::span<const std::string> command_line) {
+  for (const auto& [name, value] : scene.petsc) require_value(name, !value.empty(), "petsc." + name);
+  for (std::size_t i = 0; i < command_line.size(); ++i) {
+    const bool has_value = i + 1 < command_line.size() && !is_option(command_line[i + 1]);
+    if (is_option(command_line[i])) require_value(command_line[i].substr(1), has_value, command_line[i]);
+  }
+}
+
+void reject_unused_options(MPI_Comm comm, bool allow_unknown, bool damped) {
   if (allow_unknown) return;
   std::string message;
-  auto known = well_known_options();
-  known.insert(known.end(), ours.begin(), ours.end());
-  for (const auto& name : unused_options()) {
-    if (std::find(ours.begin(), ours.end(), name) != ours.end()) continue;
-    message = complaint(name, known);
-    break;
-  }
+  for (const auto& name : unused_options())
+    if (message.empty() && !contains(process_options(), name)) message = complaint(name, damped);
   agree_or_throw(comm, message);
 }
 

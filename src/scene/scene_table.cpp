@@ -1,4 +1,7 @@
+#include "evert/scene/petsc_options.hpp"
+
 #include "tables.hpp"
+#include <algorithm>
 
 /// The keys at the top of a scene, and those of the run.
 namespace evert {
@@ -89,9 +92,14 @@ void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*pat
     expect_countable(*scene.checkpoint->every_simulated, scene.end_time, map, "checkpoint",
                      "every_simulated");
   if (scene.bodies.empty()) fail(*map.find("bodies"), "bodies", "must name at least one body");
-  for (const auto& [name, value] : scene.petsc)
-    if (name.starts_with('-'))
-      fail(*map.find("petsc")->find(name), "petsc." + name, "is written without its dash: " + name.substr(1));
+  for (const auto& [name, value] : scene.petsc) {
+    const auto& entry = *map.find("petsc")->find(name);
+    if (name.starts_with('-')) fail(entry, "petsc." + name, "is written without its dash: " + name.substr(1));
+    const auto& process = process_options();
+    if (std::find(process.begin(), process.end(), name) != process.end())
+      fail(entry, "petsc." + name,
+           "must be given on the command line: PETSc reads it when there is no scene yet, or no more");
+  }
 }
 
 }  // namespace

@@ -19,6 +19,11 @@ Case bad_mesh(const std::string& name, const File& mesh, const std::vector<std::
   return {.name = name, .files = {scene_with_mesh(mesh.path), mesh}, .says = says};
 }
 
+/// With an option for the damping solves, which it does not make.
+File undamped_scene() {
+  return scene({{"    damping: {model: rotated, stiffness_proportional: 0.01}\n", ""}});
+}
+
 Case bad_command(const std::string& name, const std::string& command, const std::vector<std::string>& says) {
   return {.name = name, .command = command, .files = {scene()}, .says = says};
 }
@@ -63,6 +68,19 @@ const std::vector<Case> good_runs{
      .exit_code = 0,
      .says = {"after 7 steps"}},
     {.name = "quiet", .command = "run scene.yaml -quiet", .files = {scene()}, .exit_code = 0},
+    {.name = "icc_on_one_rank",
+     .command = "run scene.yaml -damping_mat_type sbaij -damping_pc_type icc",
+     .files = {scene()},
+     .exit_code = 0,
+     .ranks = {1}},
+    {.name = "gamg",
+     .command = "run scene.yaml -damping_mat_type aij -damping_pc_type gamg",
+     .files = {scene()},
+     .exit_code = 0},
+    {.name = "solver_of_the_transpose",
+     .command = "run scene.yaml -damping_ksp_type bicg",
+     .files = {scene()},
+     .exit_code = 0},
     {.name = "version", .command = "--version", .exit_code = 0, .says = {"evert "}},
     {.name = "help", .command = "run -help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
     {.name = "bench_step",
@@ -138,6 +156,29 @@ const std::vector<Case> bad_commands{
     bad_command("unknown_preconditioner", "run scene.yaml -damping_pc_type jakobi", {"jakobi"}),
     bad_command("option_without_number", "run scene.yaml -damping_ksp_rtol small",
                 {"PETSc refuses", "small"}),
+    bad_command("option_without_value", "run scene.yaml -damping_ksp_rtol",
+                {"-damping_ksp_rtol: needs a value"}),
+    bad_command("shell_preconditioner", "run scene.yaml -damping_pc_type shell",
+                {"-damping_pc_type shell is not allowed", "pbjacobi"}),
+    bad_command("entries_for_gamg", "run scene.yaml -damping_pc_type gamg", {"add -damping_mat_type aij"}),
+    bad_command("gamg_of_blocks", "run scene.yaml -damping_mat_type baij -damping_pc_type gamg",
+                {"-damping_pc_type gamg does not work with -damping_mat_type baij: must be aij"}),
+    bad_command("blocks_of_a_triangle", "run scene.yaml -damping_mat_type sbaij -damping_pc_type pbjacobi",
+                {"does not work with -damping_mat_type sbaij: must be shell, baij or aij"}),
+    {.name = "icc_on_several_ranks",
+     .command = "run scene.yaml -damping_mat_type sbaij -damping_pc_type icc",
+     .files = {scene()},
+     .says = {"one rank only", "-damping_pc_type bjacobi -damping_sub_pc_type icc"},
+     .ranks = {2, 3}},
+    bad_command("composite_of_nothing", "run scene.yaml -damping_mat_type aij -damping_pc_type composite",
+                {"PETSc refuses"}),
+    {.name = "option_without_damping",
+     .files = {undamped_scene()},
+     .says = {"-damping_ksp_rtol", "has no effect", "nothing in this scene is damped"}},
+    {.name = "option_without_damping_check",
+     .command = "check scene.yaml",
+     .files = {undamped_scene()},
+     .says = {"-damping_ksp_rtol", "has no effect", "nothing in this scene is damped"}},
     bad_command("set_without_value", "run scene.yaml -set end_time", {"path=value"}),
     bad_command("set_without_argument", "run scene.yaml -set", {"-set"}),
     bad_command("set_unknown_key", "run scene.yaml -set integrator.time_stepp=1e-4",
@@ -214,6 +255,12 @@ const std::vector<Case> bad_scenes{
     bad_scene("constraint_on_missing_nodes",
               {"petsc:", "constraints: [{body: cube, node_set: left, fixed: true}]\npetsc:"},
               {"left", "x_min"}),
+    bad_scene("petsc_option_of_the_process", {"petsc: {", "petsc: {log_view: null, "},
+              {"scene.yaml:13", "petsc.log_view", "command line"}),
+    bad_scene("petsc_option_without_value", {"damping_ksp_rtol: 1e-6", "damping_ksp_rtol: null"},
+              {"petsc.damping_ksp_rtol: needs a value"}),
+    bad_scene("petsc_list", {"damping_ksp_rtol: 1e-6", "damping_ksp_rtol: [1e-6]"},
+              {"scene.yaml:13", "petsc.damping_ksp_rtol", "not a list"}),
     bad_scene("unknown_petsc_option", {"damping_ksp_rtol", "damping_ksp_rtl"},
               {"damping_ksp_rtl", "damping_ksp_rtol"}),
     {.name = "more_ranks_than_cells",

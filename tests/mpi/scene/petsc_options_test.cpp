@@ -23,13 +23,21 @@ class PetscOptionsTest : public ::testing::Test {
     return set == PETSC_TRUE ? text.data() : "absent";
   }
 
-  static std::string complaint(bool allow_unknown = false, const std::vector<std::string>& ours = {}) {
+  static std::string message_of(const std::function<void()>& work) {
     try {
-      reject_unused_options(PETSC_COMM_WORLD, allow_unknown, ours);
+      work();
       return "nothing";
     } catch (const UserError& error) {
       return error.what();
     }
+  }
+
+  static std::string complaint(bool allow_unknown = false, bool damped = true) {
+    return message_of([&] { reject_unused_options(PETSC_COMM_WORLD, allow_unknown, damped); });
+  }
+
+  static std::string missing(const SceneConfig& scene, const std::vector<std::string>& command_line) {
+    return message_of([&] { require_option_values(scene, command_line); });
   }
 };
 
@@ -71,17 +79,27 @@ TEST_F(PetscOptionsTest, from_the_scene_are_checked_too) {
   EXPECT_EQ(complaint(), "-zzz: unknown option; -allow_unknown_options lets it pass");
 }
 
-TEST_F(PetscOptionsTest, of_ours_pass) {
-  command_line("-quiet");
-  EXPECT_EQ(complaint(false, {"quiet"}), "nothing");
+TEST_F(PetscOptionsTest, of_the_process_pass) {
+  command_line("-options_left -citations");
+  EXPECT_EQ(complaint(), "nothing");
 }
 
-TEST_F(PetscOptionsTest, of_the_start_belong_to_the_command_line) {
+TEST_F(PetscOptionsTest, of_solves_that_are_not_made_have_no_effect) {
+  command_line("-damping_ksp_rtol 1e-9");
+  EXPECT_EQ(complaint(false, false),
+            "-damping_ksp_rtol: has no effect, since nothing in this scene is damped (bodies.NAME.damping)");
+  EXPECT_EQ(complaint(true, false), "nothing");
+}
+
+TEST_F(PetscOptionsTest, that_need_a_value_have_one) {
   SceneConfig scene;
-  scene.petsc = {{"log_view", ""}};
-  apply_petsc_block(scene);
-  EXPECT_EQ(complaint(),
-            "petsc.log_view: must be given on the command line: PETSc reads it before there is a scene");
+  scene.petsc = {{"damping_ksp_monitor", ""}, {"damping_ksp_atol", "0"}};
+  EXPECT_EQ(missing(scene, {"-damping_ksp_divtol", "-1", "-log_view"}), "nothing");
+  EXPECT_EQ(missing(scene, {"-damping_ksp_rtol", "-log_view"}),
+            "-damping_ksp_rtol: needs a value, but has none");
+  EXPECT_EQ(missing(scene, {"-damping_pc_type"}), "-damping_pc_type: needs a value, but has none");
+  scene.petsc.emplace_back("damping_ksp_rtol", "");
+  EXPECT_EQ(missing(scene, {}), "petsc.damping_ksp_rtol: needs a value, but has none");
 }
 
 }  // namespace

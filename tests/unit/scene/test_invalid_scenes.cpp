@@ -217,6 +217,11 @@ const std::vector<Mistake> mistakes{
      "scene.yaml:1: name: 'a\\nb' is not allowed: must be one line without control characters"},
     {"list_in_petsc", "damping_ksp_type: cg", "damping_ksp_type: [cg]",
      "scene.yaml:45: petsc.damping_ksp_type: must be a number or a word, not a list"},
+    {"map_in_petsc", "damping_ksp_type: cg", "damping_ksp_type: {a: 1}",
+     "scene.yaml:45: petsc.damping_ksp_type: must be a number or a word, not a map of keys"},
+    {"option_of_the_process_in_petsc", "damping_ksp_type: cg", "log_view: null",
+     "scene.yaml:45: petsc.log_view: must be given on the command line: PETSc reads it when there is no "
+     "scene yet, or no more"},
     {"dash_in_petsc", "damping_ksp_type: cg", "-damping_ksp_type: cg",
      "scene.yaml:45: petsc.-damping_ksp_type: is written without its dash: damping_ksp_type"},
 };
