@@ -108,11 +108,11 @@ class FrameTimes final : public Observer {
 };
 
 int step_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
-  const auto run = parse_run_arguments(arguments);
+  const auto run = parse_run_arguments(arguments, "bench step");
   const auto scene = load_scene(comm, run.scene, run.overrides);
   apply_petsc_block(scene);
   auto built = build_scene(comm, scene);
-  reject_unused_options(comm, run.allow_unknown_options);
+  reject_unused_options(comm, run.allow_unknown_options, built.simulation->elastic().damped());
 
   auto frames = std::make_unique<FrameTimes>(scene.output.frames_per_second);
   const auto& counted = *frames;
@@ -131,10 +131,7 @@ int step_command(MPI_Comm comm, std::span<const std::string> arguments, std::ost
 
 int bench_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
   const std::vector<std::string> commands{"kernels", "step"};
-  const auto asks_for_help = [](const std::string& word) {
-    return word == "-h" || word == "-help" || word == "--help";
-  };
-  if (std::ranges::any_of(arguments, asks_for_help)) {
+  if (asks_for_help(arguments)) {
     if (rank_of(comm) == 0) out << help;
     return 0;
   }

@@ -40,7 +40,7 @@ TEST(Reference, explains_words) {
 }
 
 TEST(Reference, lists_the_keys_below) {
-  EXPECT_NE(reference_of("checkpoint").find("every_simulated or every_wall"), std::string::npos);
+  EXPECT_NE(reference_of("checkpoint").find("every_simulated, every_wall"), std::string::npos);
 }
 
 TEST(Reference, suggests_for_unknown_keys) {
