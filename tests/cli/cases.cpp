@@ -66,7 +66,7 @@ const std::vector<Case> good_runs{
      .command = "run scene.yaml -set integrator.time_step=4e-4",
      .files = {scene({halfway_event})},
      .exit_code = 0,
-     .says = {"after 7 steps"}},
+     .says = {", 7 steps in"}},
     {.name = "quiet", .command = "run scene.yaml -quiet", .files = {scene()}, .exit_code = 0},
     {.name = "icc_on_one_rank",
      .command = "run scene.yaml -damping_mat_type sbaij -damping_pc_type icc",
