@@ -1,6 +1,7 @@
 #include "evert/forces/kernels/cpu_level.hpp"
 
 #include "evert/core/error.hpp"
+#include "evert/math/cpu_support.hpp"
 
 #include <cstdlib>
 #include <string>
@@ -28,8 +29,8 @@ ElasticKernels find(CellType type, const Material& material, DampingModel dampin
 std::span<const CpuLevel> cpu_levels() {
 #if defined(__x86_64__)
   static const CpuLevel levels[] = {{"v2", true, v2::find},
-                                    {"v3", __builtin_cpu_supports("x86-64-v3") != 0, v3::find},
-                                    {"v4", __builtin_cpu_supports("x86-64-v4") != 0, v4::find}};
+                                    {"v3", cpu_supports("v3"), v3::find},
+                                    {"v4", cpu_supports("v4"), v4::find}};
 #else
   static const CpuLevel levels[] = {{"baseline", true, baseline::find}};
 #endif
