@@ -84,11 +84,12 @@ void TetSubject::naive_force_part() {
 // As a kernel that needs U and V goes on with them: a run at a time, before they leave the cache.
 void TetSubject::svd_part() {
   constexpr std::size_t run = 64;
-  const auto& kernels = level_kernels();
   decompositions_.resize(run);
   const auto [begin, end] = svd_parts_.next();
-  for (std::size_t first = begin; first < end; first += run)
-    kernels.svd3(&gradients_[first], decompositions_.data(), std::min(run, end - first));
+  for (std::size_t first = begin; first < end; first += run) {
+    const auto piece = std::span(gradients_).subspan(first, std::min(run, end - first));
+    svd3_batch(piece, std::span(decompositions_).first(piece.size()));
+  }
 }
 
 HexSubject::HexSubject(MPI_Comm comm, int divisions)

@@ -6,7 +6,7 @@
 #include "evert/core/aligned.hpp"
 #include "evert/forces/elastic_forces.hpp"
 #include "evert/integrators/damping_matrix.hpp"
-#include "evert/math/svd3.hpp"
+#include "evert/math/svd3_batch.hpp"
 
 #include <vector>
 

@@ -41,42 +41,11 @@ void triad(double* a, const double* b, const double* c, double factor, std::size
     store(load<Pack>(b + i) + factors * load<Pack>(c + i), a + i);
 }
 
-void svd3_of(const Mat3d* f, Svd3<double>* result, std::size_t count) {
-  constexpr std::size_t lanes = lanes_v<Pack>;
-  for (std::size_t first = 0; first < count; first += lanes) {
-    Mat3<Pack> packed;
-    for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        packed(i, j) = generate<Pack>([&](std::size_t l) {
-          const std::size_t at = first + l;  // past the end: the last once more
-          return f[at < count ? at : count - 1](i, j);
-        });
-      }
-    }
-    const Svd3<Pack> svd = evert::svd3(packed);
-    for (std::size_t l = 0; l < lanes && first + l < count; ++l) {
-      Svd3<double>& one = result[first + l];
-      for (std::size_t j = 0; j < 3; ++j) {
-        one.sigma[j] = lane(svd.sigma[j], l);
-        for (std::size_t i = 0; i < 3; ++i) {
-          one.u(i, j) = lane(svd.u(i, j), l);
-          one.v(i, j) = lane(svd.v(i, j), l);
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
 
 LevelKernels kernels() {
-  return {EVERT_STRING(EVERT_KERNEL_LEVEL),
-          multiply_add,
-          2.0 * chains * lanes_v<Pack>,
-          divide_and_root,
-          2.0 * chains * lanes_v<Pack>,
-          triad,
-          svd3_of};
+  return {EVERT_STRING(EVERT_KERNEL_LEVEL), multiply_add, 2.0 * chains * lanes_v<Pack>, divide_and_root,
+          2.0 * chains * lanes_v<Pack>,     triad};
 }
 
 }  // namespace evert::bench::EVERT_KERNEL_LEVEL

@@ -1,5 +1,5 @@
 #pragma once
-#include "evert/math/svd3.hpp"
+#include "evert/math/pack.hpp"
 
 #include <cstddef>
 #include <string_view>
@@ -18,8 +18,6 @@ struct LevelKernels {
   double divisions_per_step;  ///< and square roots
   /// a = b + factor · c for `count` numbers, a multiple of 8.
   void (*triad)(double* a, const double* b, const double* c, double factor, std::size_t count);
-  /// U, σ, V of `count` matrices.
-  void (*svd3)(const Mat3d* f, Svd3<double>* result, std::size_t count);
 };
 
 /// Those of kernels::chosen_cpu_level(), and as that it throws UserError.

@@ -28,9 +28,8 @@ ElasticKernels find(CellType type, const Material& material, DampingModel dampin
 
 std::span<const CpuLevel> cpu_levels() {
 #if defined(__x86_64__)
-  static const CpuLevel levels[] = {{"v2", true, v2::find},
-                                    {"v3", cpu_supports("v3"), v3::find},
-                                    {"v4", cpu_supports("v4"), v4::find}};
+  static const CpuLevel levels[] = {
+      {"v2", true, v2::find}, {"v3", cpu_supports("v3"), v3::find}, {"v4", cpu_supports("v4"), v4::find}};
 #else
   static const CpuLevel levels[] = {{"baseline", true, baseline::find}};
 #endif

@@ -3,31 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace evert::bench {
 namespace {
-
-TEST(LevelKernels, SvdOfAnyNumberOfMatrices) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal(0, 1);
-  for (const std::size_t count : {1U, 2U, 7U, 8U, 64U, 67U}) {
-    std::vector<Mat3d> f(count);
-    for (auto& matrix : f)
-      for (auto& column : matrix.column)
-        for (double& entry : column.components) entry = normal(random);
-    // One more, to see that nothing is written past the end.
-    std::vector<Svd3<double>> result(count + 1);
-    result.back().sigma = {-7, -7, -7};
-    level_kernels().svd3(f.data(), result.data(), count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& [u, sigma, v] = result[i];
-      EXPECT_LE(norm(u * diagonal(sigma) * transpose(v) - f[i]), 1e-14 * norm(f[i]));
-    }
-    EXPECT_EQ(result.back().sigma, (Vec3d{-7, -7, -7}));
-  }
-}
 
 TEST(LevelKernels, Triad) {
   const std::vector<double> b(24, 1.0);
