@@ -90,9 +90,9 @@ TEST(Simulation, PhasesAddUpToNoMoreThanTheWallTime) {
   for (std::size_t phase = 0; phase < phase_count; ++phase)
     sum += spent[phase] = phase_seconds()[phase] - before[phase];
   EXPECT_LE(sum, wall);
-  for (const auto phase :
-       {Phase::setup, Phase::force, Phase::damping_apply, Phase::damping_solve, Phase::halo})
+  for (const auto phase : {Phase::setup, Phase::force, Phase::damping_apply, Phase::damping_solve})
     EXPECT_GT(spent[static_cast<std::size_t>(phase)], 0) << name_of(phase);
+  EXPECT_EQ(spent[static_cast<std::size_t>(Phase::halo)] > 0, size_of(PETSC_COMM_WORLD) > 1);
 }
 
 }  // namespace
