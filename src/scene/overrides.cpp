@@ -70,8 +70,14 @@ class Override {
 
   /// The path goes on below the key `info` of `map`.
   void inside(Value& map, const KeyInfo& info, std::size_t part) {
-    if (map.find(info.name) == nullptr) map.set(info.name, Value{.kind = Value::Kind::null, .where = where_});
-    auto& value = *map.find(info.name);
+    const bool absent = map.find(info.name) == nullptr;
+    if (absent) map.set(info.name, Value{.kind = Value::Kind::null, .where = where_});
+    below(*map.find(info.name), info, part);
+    // taking a key away from a block that is not there must not leave an empty one
+    if (absent && map.find(info.name)->kind == Value::Kind::null) map.erase(info.name);
+  }
+
+  void below(Value& value, const KeyInfo& info, std::size_t part) {
     switch (info.type.shape) {
       case TypeInfo::Shape::table:
         return in_table(value, *info.type.table, part + 1);

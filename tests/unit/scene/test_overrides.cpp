@@ -28,6 +28,11 @@ TEST(Overrides, set_values_of_every_kind) {
   EXPECT_EQ(with({"petsc.damping_pc_type=none"}).petsc.back().second, "none");
 }
 
+TEST(Overrides, take_away_what_is_not_there) {
+  EXPECT_TRUE(with({"petsc.damping_pc_type=null"}, least_scene).petsc.empty());
+  EXPECT_FALSE(with({"checkpoint.every_wall=null"}, least_scene).checkpoint);
+}
+
 TEST(Overrides, apply_in_order) { EXPECT_EQ(with({"end_time=1", "end_time=2", "end_time=3"}).end_time, 3); }
 
 TEST(Overrides, add_what_the_scene_leaves_out) {
