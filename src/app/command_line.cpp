@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
 
 namespace evert {
@@ -32,6 +34,13 @@ std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
+}
+
+/// PETSc reads the file on one rank, and lets the others wait when it cannot.
+void require_readable(const std::string& options_file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(options_file, error) || !std::ifstream(options_file))
+    throw UserError("-options_file " + options_file + ": there is no such file that can be read");
 }
 
 }  // namespace
@@ -71,6 +80,7 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments, const s
       if (i + 1 < arguments.size() && option_name(arguments[i + 1]).empty() &&
           !ends_with_yaml(arguments[i + 1]))
         run.petsc.push_back(arguments[++i]);
+      if (name == "options_file") require_readable(run.petsc.back());
     } else if (run.scene.empty()) {
       run.scene = arguments[i];
     } else {

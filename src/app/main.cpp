@@ -94,13 +94,32 @@ Arguments petsc_options(const std::string& command, const Arguments& arguments) 
   }
 }
 
-int initialize_petsc(const char* program, Arguments options, const char* help) {
+/// PETSc's sentence when it refuses to start (an options file that cannot be taken apart), else "".
+std::string initialize_petsc(const char* program, Arguments options, const char* help) {
   std::vector<char*> argv{const_cast<char*>(program)};
   for (auto& option : options) argv.push_back(option.data());
   argv.push_back(nullptr);
   int argc = static_cast<int>(argv.size()) - 1;
   char** pointer = argv.data();
-  return PetscInitialize(&argc, &pointer, nullptr, help);
+  return evert::refusal_of([&] { return PetscInitialize(&argc, &pointer, nullptr, help); });
+}
+
+/// Other ranks may be waiting for the one that PETSc failed on.
+int refuse_to_start(const std::string& refusal) {
+  std::fprintf(stderr, "evert: PETSc does not start: %s\n", refusal.c_str());
+  int running = 0;
+  MPI_Initialized(&running);
+  if (running != 0) MPI_Abort(MPI_COMM_WORLD, bad_input);
+  return bad_input;
+}
+
+/// The last thing of a run: PETSc writes what -log_view and its like ask for.
+int finalize_petsc(int code) {
+  const int rank = evert::rank_of(MPI_COMM_WORLD);  // nobody can be asked afterwards
+  const auto refusal = evert::refusal_of([] { return PetscFinalize(); });
+  if (refusal.empty()) return code;
+  if (rank == 0) std::fprintf(stderr, "evert: PETSc does not end: %s\n", refusal.c_str());
+  return bad_input;
 }
 
 }  // namespace
@@ -122,10 +141,11 @@ int main(int argc, char** argv) {
   // for a user who may not write there.
   setenv("OMPI_MCA_sharedfp", "^sm", 0);
   const auto help = evert::run_usage();
-  if (initialize_petsc(argv[0], petsc_options(command, arguments), help.c_str()) != 0) return bug;
+  const auto refusal = initialize_petsc(argv[0], petsc_options(command, arguments), help.c_str());
+  if (!refusal.empty()) return refuse_to_start(refusal);
   std::signal(SIGPIPE, SIG_DFL);  // PETSc would report a crash after `evert explain | head`
   evert::register_log_events();
   const int code = guarded(command, arguments);
   std::cout.flush();
-  return PetscFinalize() == 0 ? code : bug;
+  return finalize_petsc(code);
 }

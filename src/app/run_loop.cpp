@@ -25,7 +25,10 @@ double next_stop(const Simulation& simulation, double end_time,
 StepReport step_towards(Simulation& simulation, double stop) {
   const double left = stop - simulation.time();
   constexpr double rounding = 1e-9;
-  const double steps = std::ceil(left / simulation.suggested_time_step() - rounding);
+  constexpr double most_steps = 1e15;  // more would not end, nor would their times differ
+  const double dt = simulation.suggested_time_step();
+  if (!(left / dt < most_steps)) simulation.give_up("the state allows no time step that leads anywhere");
+  const double steps = std::ceil(left / dt - rounding);
   return steps <= 1 ? simulation.step_to(stop) : simulation.step(left / steps);
 }
 

@@ -36,12 +36,18 @@ void use_one_blas_thread() {
   if (set_threads != nullptr) set_threads(1);
 }
 
-void check_options(const std::function<PetscErrorCode()>& calls) {
+std::string refusal_of(const std::function<PetscErrorCode()>& calls) {
   std::string message;
   check(PetscPushErrorHandler(keep_message, &message));
   const auto code = calls();
   check(PetscPopErrorHandler());
-  if (code != 0) throw UserError("PETSc refuses an option: " + message.substr(0, message.find('\n')));
+  if (code == 0) return "";
+  return message.empty() ? "error " + std::to_string(code) : message.substr(0, message.find('\n'));
+}
+
+void check_options(const std::function<PetscErrorCode()>& calls) {
+  const auto refusal = refusal_of(calls);
+  if (!refusal.empty()) throw UserError("PETSc refuses an option: " + refusal);
 }
 
 }  // namespace evert

@@ -87,6 +87,25 @@ void require_possible(const std::string& name, const std::string& matrix, int ra
                     name + " does the same on each");
 }
 
+/// What PETSc takes without a word, and then ends every solve at its first guess or never.
+void require_tolerances(KSP ksp) {
+  PetscReal rtol = 0;
+  PetscReal atol = 0;
+  check(KSPGetTolerances(ksp, &rtol, &atol, nullptr, nullptr));
+  if (!(rtol >= 0 && rtol < 1)) throw UserError("-damping_ksp_rtol is not allowed: must be in [0, 1)");
+  if (!(atol >= 0)) throw UserError("-damping_ksp_atol is not allowed: must be >= 0");
+}
+
+/// Without iterations, the preconditioner must be a solver.
+void require_solver(KSP ksp, const std::string& preconditioner) {
+  const std::vector<std::string> direct{"lu", "cholesky", "qr", "svd", "redundant", "ksp"};
+  const char* type = nullptr;
+  check(KSPGetType(ksp, &type));
+  if (std::string(type) == KSPPREONLY && !holds(direct, preconditioner))
+    throw UserError("-damping_ksp_type preonly solves nothing with -damping_pc_type " + preconditioner +
+                    ": must be with " + list_of(direct));
+}
+
 /// GAMG keeps its first coarse spaces and eigenvalues unless told otherwise; ours change by orders of
 /// magnitude with the step and the material.
 void rebuild_multigrid(PC pc) {
@@ -119,6 +138,8 @@ KspHandle damping_ksp(MPI_Comm comm, const std::string& matrix_type) {
   check(KSPSetTolerances(ksp.get(), default_rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   check_options([&] { return KSPSetFromOptions(ksp.get()); });
   require_possible(type_of(pc), matrix_type, size_of(comm));
+  require_solver(ksp.get(), type_of(pc));
+  require_tolerances(ksp.get());
   rebuild_multigrid(pc);
   return ksp;
 }

@@ -87,8 +87,7 @@ StepReport Simulation::step(double dt) { return step_to(system_.time + dt); }
 
 StepReport Simulation::step_to(double end_time) {
   const double dt = end_time - system_.time;
-  if (!(dt > 0))
-    throw SimulationError("at " + moment() + ": no time step is short enough for the state" + advice());
+  if (!(dt > 0)) give_up("the time step is lost in the rounding of the time");
   apply_due_events();
   refresh_forces();
   auto report = advance(dt);
@@ -102,7 +101,7 @@ StepReport Simulation::advance(double dt) {
   try {
     return integrator_.advance(system_, dt);
   } catch (const SimulationError& error) {  // of a solve, on all ranks; it knows no time
-    throw SimulationError("at " + moment() + ": " + error.what());
+    throw SimulationError(moment() + error.what());
   }
 }
 
@@ -115,25 +114,29 @@ bool Simulation::agree_on_state() {
       counts[0] += sound(x.subspan(i, 3), v.subspan(i, 3)) ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, counts.data(), 2, MPI_INT64_T, MPI_SUM, mesh_.comm);
   if (counts[0] > 0)
-    throw SimulationError("at " + moment() + ": the motion has blown up, " + std::to_string(counts[0]) +
-                          " of " + std::to_string(mesh_.total_nodes) +
-                          " nodes are faster than light or not finite" + (steps_ > 0 ? advice() : ""));
+    give_up("the motion has blown up, " + std::to_string(counts[0]) + " of " +
+            std::to_string(mesh_.total_nodes) + " nodes are faster than light or not finite");
   return counts[1] > 0;
 }
 
 std::string Simulation::moment() const {
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "t = %.6g s, step %lld", system_.time,
+  std::snprintf(text.data(), text.size(), "at t = %.6g s, step %lld: ", system_.time,
                 static_cast<long long>(steps_));
   return text.data();
 }
 
-std::string Simulation::advice() const {
-  if (!(fixed_time_step_ > 0)) return "; a smaller integrator.safety or max_strain_increment may help";
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "; an integrator.time_step below %.6g s, or auto, may help",
-                fixed_time_step_);
-  return text.data();
+void Simulation::give_up(const std::string& what) const {
+  std::array<char, 96> advice{};
+  if (steps_ == 0)
+    std::snprintf(advice.data(), advice.size(), "; look at the numbers of the scene");
+  else if (fixed_time_step_ > 0)
+    std::snprintf(advice.data(), advice.size(), "; an integrator.time_step below %.6g s, or auto, may help",
+                  fixed_time_step_);
+  else
+    std::snprintf(advice.data(), advice.size(),
+                  "; a smaller integrator.safety or max_strain_increment may help");
+  throw SimulationError(moment() + what + advice.data());
 }
 
 double Simulation::suggested_time_step() {

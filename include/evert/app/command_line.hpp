@@ -21,7 +21,8 @@ struct RunArguments {
 [[nodiscard]] bool asks_for_help(std::span<const std::string> arguments);
 
 /// Takes the arguments after `evert run`, or another `command` that takes the same, apart; options may be
-/// written with one dash or two. Throws UserError when a value is missing or there is not exactly one scene.
+/// written with one dash or two. Throws UserError when a value is missing, an options file cannot
+/// be read, or there is not exactly one scene.
 [[nodiscard]] RunArguments parse_run_arguments(std::span<const std::string> arguments,
                                                const std::string& command = "run");
 

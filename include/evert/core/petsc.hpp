@@ -5,6 +5,7 @@
 #include <functional>
 #include <source_location>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 /// Thin move-only handles over PETSc objects, and the one place where its error codes are looked at.
@@ -28,6 +29,10 @@ inline void check(PetscErrorCode code, const std::source_location& where = std::
 /// vectors of our length its threads cost many times what they gain. OPENBLAS_NUM_THREADS or OMP_NUM_THREADS
 /// in the environment win. Not collective.
 void use_one_blas_thread();
+
+/// PETSc's own sentence when `calls` fail, in place of its traceback on standard error; else "". As
+/// collective as they are.
+[[nodiscard]] std::string refusal_of(const std::function<PetscErrorCode()>& calls);
 
 /// Makes calls that read PETSc options, as collective as they are. A value that PETSc refuses (it cannot be
 /// asked beforehand) becomes a UserError with PETSc's own sentence, in place of its traceback on standard

@@ -47,6 +47,9 @@ class Simulation {
   /// The time of the next event [s], or infinity. Not collective.
   [[nodiscard]] double next_event() const;
 
+  /// Throws SimulationError with the time, `what`, and what may help. Not collective; for all ranks together.
+  [[noreturn]] void give_up(const std::string& what) const;
+
   /// Not collective: any rank may ask. StepReport::stop_requested of the next step tells all of them; the
   /// wish travels with what each step reduces anyway.
   void request_stop() { stop_requested_ = true; }
@@ -86,10 +89,8 @@ class Simulation {
   StepReport advance(double dt);
   /// True when any rank has called request_stop. Throws SimulationError when any rank's state is not sound.
   bool agree_on_state();
-  /// "t = 0.1 s, step 12", for messages.
+  /// "at t = 0.1 s, step 12: ", for messages.
   [[nodiscard]] std::string moment() const;
-  /// "; ... may help".
-  [[nodiscard]] std::string advice() const;
 
   DistributedMesh mesh_;
   ElasticForces elastic_;
