@@ -10,6 +10,7 @@
 #pragma weak PMPI_Init
 #pragma weak PMPI_Init_thread
 #pragma weak PMPI_Finalize
+#pragma weak PMPI_File_open
 #pragma weak PMPI_File_write_at_all
 
 namespace {
@@ -40,6 +41,13 @@ int MPI_Init_thread(int* argc, char*** argv, int required, int* provided) {
 int MPI_Finalize() {
   const __lsan::ScopedDisabler not_ours;
   return PMPI_Finalize();
+}
+
+/// With OMPI_MCA_sharedfp=^sm (src/app/main.cpp) Open MPI 4.1 forgets the name of the file that would keep
+/// the shared file pointer.
+int MPI_File_open(MPI_Comm comm, const char* path, int mode, MPI_Info info, MPI_File* file) {
+  const __lsan::ScopedDisabler not_ours;
+  return PMPI_File_open(comm, path, mode, info, file);
 }
 
 /// Open MPI 4.1 forgets the list of writing ranks (mca_common_ompio_set_aggregator_props), from 3 ranks on.
