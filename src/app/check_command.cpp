@@ -75,7 +75,8 @@ void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& b
                     formatted("%lld nodes, box ", static_cast<long long>(range.end_node - range.first_node)) +
                     vector_text(range.lower) + " to " + vector_text(range.upper) + " m");
     report.line("bodies", formatted("  density %g kg/m^3, ", body.density) + material_text(body.material) +
-                              ", " + damping_text(body.damping));
+                              ", " + damping_text(body.damping) +
+                              (body.precision == Precision::mixed ? ", mixed precision" : ""));
     for (const auto& group : body.groups)
       report.line("bodies", "  " + group.name + ": " +
                                 formatted("density %g kg/m^3, ", group.density.value_or(body.density)) +
@@ -198,8 +199,11 @@ void report_cost(Report& report, const SceneConfig& scene, Simulation& simulatio
   PetscLogDouble resident = 0;
   check(PetscMemoryGetCurrentUsage(&resident));
   constexpr double mega = 1e6;
-  report.line("memory", formatted("%.1f MB, of which element data %.1f MB", resident / mega,
-                                  static_cast<double>(simulation.elastic().memory()) / mega));
+  const auto elements = static_cast<double>(simulation.elastic().memory());
+  double cells = 0;
+  for (const auto& of_region : simulation.mesh().cells) cells += static_cast<double>(of_region.size());
+  report.line("memory", formatted("%.1f MB, of which element data %.1f MB, %.0f bytes a cell",
+                                  resident / mega, elements / mega, elements / cells));
   report.line("cost", formatted("%.2g s a step at the start, on one rank: ", step_seconds) +
                           duration_text(steps * step_seconds) +
                           " for these steps; output and harder damping solves come on top");

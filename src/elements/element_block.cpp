@@ -61,7 +61,7 @@ class LaneWriter {
                         std::span<const Vec3d> rest_positions) {
     for (std::size_t q = 0; q < points; ++q) {
       const Mat3d jacobian = rest_jacobian(element_, q, cell, rest_positions);
-      block_.volumes[at(slot, points, q)] = element_.weights[q] * determinant(jacobian);
+      block_.volumes.set(at(slot, points, q), element_.weights[q] * determinant(jacobian));
       const Mat3d inverse_jacobian = inverse(jacobian);
       if (block_.shape_data == ShapeData::inverse_jacobian) {
         for (std::size_t j = 0; j < 3; ++j) write_shape(slot, q, j, inverse_jacobian.column[j]);
@@ -77,7 +77,7 @@ class LaneWriter {
   void write_shape(std::size_t slot, std::size_t q, std::size_t j, const Vec3d& vector) {
     const std::size_t per_point = shape_vectors(block_.shape_data, nodes);
     for (std::size_t i = 0; i < 3; ++i)
-      block_.shapes[at(slot, 3 * points * per_point, 3 * (q * per_point + j) + i)] = vector[i];
+      block_.shapes.set(at(slot, 3 * points * per_point, 3 * (q * per_point + j) + i), vector[i]);
   }
 
   /// Position of number `i` of the `count` a cell has, in an array [batch][count][lane].
@@ -126,7 +126,8 @@ std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const Loca
 }
 
 ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes, LocalIndex interior,
-                                std::span<const Vec3d> rest_positions, int lanes, ShapeData shape_data) {
+                                std::span<const Vec3d> rest_positions, int lanes, ShapeData shape_data,
+                                Precision precision) {
   return with_reference_element(
       type, [&]<int node_total, int point_total>(const ReferenceElement<node_total, point_total>& element) {
         const CellList cells(nodes, node_total);
@@ -145,8 +146,8 @@ ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes
 
         const std::size_t slots = block.cell_of_lane.size();
         block.nodes.resize(slots * node_total);
-        block.shapes.resize(slots * point_total * 3 * shape_vectors(shape_data, node_total));
-        block.volumes.resize(slots * point_total);
+        block.shapes = {precision, slots * point_total * 3 * shape_vectors(shape_data, node_total)};
+        block.volumes = {precision, slots * point_total};
         LaneWriter writer(element, block);
         for (std::size_t slot = 0; slot < slots; ++slot) {
           const LocalIndex cell = block.cell_of_lane[slot];

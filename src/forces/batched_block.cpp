@@ -54,16 +54,15 @@ BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> res
                            const Material& material, const Damping& damping,
                            const kernels::ElasticKernels& kernels)
     : element_block_(make_element_block(cells.type, cells.nodes, cells.interior, rest_positions,
-                                        kernels.lanes, kernels.shape_data)),
+                                        kernels.lanes, kernels.shape_data, kernels.precision)),
       material_(material),
       damping_(damping),
       density_(cells.density),
       kernels_(kernels),
       rest_stiffness_(
           rest_stiffness(element_block_, own_mass_shares(element_block_, density_), lame_of(material))),
-      damping_state_(element_block_.cell_of_lane.size() * static_cast<std::size_t>(kernels.damping_numbers),
-                     0.0),
-      cell_nodes_(cells.nodes.begin(), cells.nodes.end()),
+      damping_state_(kernels.precision,
+                     element_block_.cell_of_lane.size() * static_cast<std::size_t>(kernels.damping_numbers)),
       lane_of_cell_(static_cast<std::size_t>(element_block_.cells)) {
   for (std::size_t slot = 0; slot < element_block_.cell_of_lane.size(); ++slot) {
     const LocalIndex cell = element_block_.cell_of_lane[slot];
@@ -96,27 +95,28 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
   if (!damped()) return;
   const auto lanes = static_cast<std::size_t>(element_block_.lanes);
   const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
-  const double* state =
-      &damping_state_[slot / lanes * lanes * static_cast<std::size_t>(kernels_.damping_numbers) +
-                      slot % lanes];
+  const LaneNumbers state(damping_state_, static_cast<std::size_t>(kernels_.damping_numbers), lanes, slot);
   const auto add_points = [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
     for (std::size_t q = 0; q < points; ++q) {
       if (kernels_.rotated_gradients) {  // V is in the h_a already
-        const auto h = read_gradients(element, element_block_.shape_data, state, lanes, q);
+        const auto h = read_gradients(element, element_block_.shape_data, state, q);
         DampingPoint<nodes>{h, identity<double>(), 1}.add_to(matrix, damping_);
       } else {
         const auto rest = rest_point(element, element_block_, slot, q);
-        const Mat3d frame = read_matrix(state + 9 * q * lanes, lanes);
-        DampingPoint<nodes>{rest.gradients, frame, rest.volume}.add_to(matrix, damping_);
+        DampingPoint<nodes>{rest.gradients, state.matrix(q), rest.volume}.add_to(matrix, damping_);
       }
     }
   };
   with_reference_element(element_block_.type, add_points);
 }
 
-std::span<const LocalIndex> BatchedBlock::cell_nodes(LocalIndex cell) const {
-  const auto per_cell = static_cast<std::size_t>(node_count(element_block_.type));
-  return std::span(cell_nodes_).subspan(static_cast<std::size_t>(cell) * per_cell, per_cell);
+CellNodes BatchedBlock::cell_nodes(LocalIndex cell) const {
+  const auto lanes = static_cast<std::size_t>(element_block_.lanes);
+  const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
+  CellNodes nodes(static_cast<std::size_t>(node_count(element_block_.type)));
+  const std::size_t first = slot / lanes * lanes * nodes.size() + slot % lanes;
+  for (std::size_t a = 0; a < nodes.size(); ++a) nodes[a] = element_block_.nodes[first + a * lanes];
+  return nodes;
 }
 
 double BatchedBlock::energy(const double* x) const { return kernels_.energy(arrays_, material_, x, all()); }
@@ -156,9 +156,9 @@ void BatchedBlock::set_mass_shares(std::span<const double> shares) {
 }
 
 std::size_t BatchedBlock::memory() const {
-  return bytes(element_block_.nodes) + bytes(element_block_.shapes) + bytes(element_block_.volumes) +
-         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) +
-         bytes(damping_state_) + bytes(cell_nodes_) + bytes(lane_of_cell_);
+  return bytes(element_block_.nodes) + element_block_.shapes.bytes() + element_block_.volumes.bytes() +
+         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) + damping_state_.bytes() +
+         bytes(lane_of_cell_);
 }
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,

@@ -25,7 +25,7 @@ class BatchedBlock final : public ElasticBlock {
   void add_damping(const double* v, double* out, double factor, BatchRange batches) const override;
   void add_damping_diagonal(double* blocks, double factor) const override;
   void damping_matrix(LocalIndex cell, std::span<double> matrix) const override;
-  [[nodiscard]] std::span<const LocalIndex> cell_nodes(LocalIndex cell) const override;
+  [[nodiscard]] CellNodes cell_nodes(LocalIndex cell) const override;
   [[nodiscard]] LocalIndex cells() const override { return element_block_.cells; }
   [[nodiscard]] double energy(const double* x) const override;
   void min_stretch(const double* x, std::span<double> per_cell) const override;
@@ -47,9 +47,8 @@ class BatchedBlock final : public ElasticBlock {
   double density_;
   kernels::ElasticKernels kernels_;
   RestStiffness rest_stiffness_;
-  AlignedVector<double> damping_state_;
+  NumberArray damping_state_;
   kernels::BlockArrays arrays_{};         // into the vectors above
-  std::vector<LocalIndex> cell_nodes_;    // node_count(type) per cell, in the order given
   std::vector<LocalIndex> lane_of_cell_;  // inverse of ElementBlock::cell_of_lane
 };
 

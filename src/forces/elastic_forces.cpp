@@ -58,10 +58,10 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   };
   on_every_rank(mesh.comm, [&] {
     for (const auto& cells : mesh.cells) {
-      const auto& [density, material, damping] = properties_of(cells);
+      const auto& [density, material, damping, precision] = properties_of(cells);
       blocks_.push_back(cells.size() == 0 ? nullptr
                                           : make_elastic_block(cells_of(cells, density), mesh.rest_positions,
-                                                               material, damping));
+                                                               material, damping, precision));
       damped_ = damped_ || damping.model != DampingModel::none;
     }
   });

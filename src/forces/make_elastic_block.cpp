@@ -6,9 +6,12 @@ namespace evert {
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
                                                  std::span<const Vec3d> rest_positions,
-                                                 const Material& material, const Damping& damping) {
+                                                 const Material& material, const Damping& damping,
+                                                 Precision precision) {
   with_reference_element(cells.type, [](const auto& /*exists*/) {});  // or throws, naming the types allowed
-  const auto kernels = kernels::chosen_cpu_level().find(cells.type, material, damping.model);
+  const kernels::CpuLevel& level = kernels::chosen_cpu_level();
+  const auto find = precision == Precision::mixed ? level.find_mixed : level.find;
+  const auto kernels = find(cells.type, material, damping.model);
   return make_elastic_block(cells, rest_positions, material, damping, kernels);
 }
 

@@ -10,27 +10,36 @@ namespace evert {
 template <int nodes>
 using NodeVectors = std::array<Vec3d, nodes>;
 
-/// A vector of one lane, [3][lane], and a matrix by columns.
-inline Vec3d read_vector(const double* of_lane, std::size_t lanes) {
-  return {of_lane[0], of_lane[lanes], of_lane[2 * lanes]};
-}
-inline Mat3d read_matrix(const double* of_lane, std::size_t lanes) {
-  return {read_vector(of_lane, lanes), read_vector(of_lane + 3 * lanes, lanes),
-          read_vector(of_lane + 6 * lanes, lanes)};
-}
+/// Numbers of one lane among those of a batch.
+class LaneNumbers {
+ public:
+  /// Of the cell in lane number `slot` of all lanes, which has `per_lane` numbers.
+  LaneNumbers(const NumberArray& numbers, std::size_t per_lane, std::size_t lanes, std::size_t slot)
+      : numbers_(numbers), first_(slot / lanes * lanes * per_lane + slot % lanes), lanes_(lanes) {}
 
-/// The shape gradients of all nodes at point `q` of one cell, from numbers [point][vector][3][lane] of the
-/// given kind; `numbers` points at the cell's lane in its batch.
+  [[nodiscard]] double number(std::size_t i) const { return numbers_[first_ + i * lanes_]; }
+  /// The i-th of its vectors, and of its matrices by columns.
+  [[nodiscard]] Vec3d vector(std::size_t i) const {
+    return {number(3 * i), number(3 * i + 1), number(3 * i + 2)};
+  }
+  [[nodiscard]] Mat3d matrix(std::size_t i) const {
+    return {vector(3 * i), vector(3 * i + 1), vector(3 * i + 2)};
+  }
+
+ private:
+  const NumberArray& numbers_;
+  std::size_t first_, lanes_;
+};
+
+/// The shape gradients of all nodes at point `q` of a cell whose shape data are `numbers`.
 template <int nodes, int points>
 NodeVectors<nodes> read_gradients(const ReferenceElement<nodes, points>& element, ShapeData kind,
-                                  const double* numbers, std::size_t lanes, std::size_t q) {
+                                  const LaneNumbers& numbers, std::size_t q) {
   NodeVectors<nodes> gradients{};
   for (std::size_t a = 1; a < nodes; ++a) {
-    if (kind == ShapeData::inverse_jacobian) {
-      gradients[a] = transpose_times(read_matrix(numbers + 9 * q * lanes, lanes), element.gradients[q][a]);
-    } else {
-      gradients[a] = read_vector(numbers + 3 * (q * (nodes - 1) + a - 1) * lanes, lanes);
-    }
+    gradients[a] = kind == ShapeData::inverse_jacobian
+                       ? transpose_times(numbers.matrix(q), element.gradients[q][a])
+                       : numbers.vector(q * (nodes - 1) + a - 1);
     gradients[0] -= gradients[a];
   }
   return gradients;
@@ -48,10 +57,9 @@ template <int nodes, int points>
 RestPoint<nodes> rest_point(const ReferenceElement<nodes, points>& element, const ElementBlock& block,
                             std::size_t slot, std::size_t q) {
   const auto lanes = static_cast<std::size_t>(block.lanes);
-  const std::size_t batch = slot / lanes, lane = slot % lanes;
-  const std::size_t numbers = block.shapes.size() / block.cell_of_lane.size();  // per lane
-  return {read_gradients(element, block.shape_data, &block.shapes[batch * numbers * lanes + lane], lanes, q),
-          block.volumes[(batch * points + q) * lanes + lane]};
+  const LaneNumbers shape(block.shapes, block.shapes.size() / block.cell_of_lane.size(), lanes, slot);
+  const LaneNumbers volumes(block.volumes, points, lanes, slot);
+  return {read_gradients(element, block.shape_data, shape, q), volumes.number(q)};
 }
 
 }  // namespace evert

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace evert {
 namespace {
@@ -73,12 +74,18 @@ std::array<RestPoint<nodes>, points> rest_points(const ReferenceElement<nodes, p
   return at;
 }
 
+/// So that a bound stays one.
+float rounded_up(double x) {
+  const auto nearest = static_cast<float>(x);
+  return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
 }  // namespace
 
 RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares,
                              const Lame& lame) {
   const auto slots = block.cell_of_lane.size();
-  RestStiffness stiffness{AlignedVector<double>(slots, 0.0), AlignedVector<double>(slots, 0.0)};
+  RestStiffness stiffness{AlignedVector<float>(slots, 0.0F), AlignedVector<float>(slots, 0.0F)};
   with_reference_element(block.type,
                          [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
                            for (std::size_t slot = 0; slot < slots; ++slot) {
@@ -92,8 +99,8 @@ RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> 
                              } else {
                                of_cell = dense_stiffness<nodes, points>(at, masses, lame);
                              }
-                             stiffness.largest[slot] = of_cell.largest;
-                             stiffness.spin[slot] = of_cell.spin;
+                             stiffness.largest[slot] = rounded_up(of_cell.largest);
+                             stiffness.spin[slot] = rounded_up(of_cell.spin);
                            }
                          });
   return stiffness;

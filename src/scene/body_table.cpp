@@ -152,6 +152,12 @@ const Table<BodyConfig>& body_table() {
                     "{model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.45}", "Elastic model.")
           .optional("damping", &BodyConfig::damping, table_of(damping_table()),
                     "{model: rotated, stiffness_proportional: 0.001}", "Without it the body is not damped.")
+          .optional("precision", &BodyConfig::precision,
+                    one_of<Precision>({{"double", Precision::full, "everything in double"},
+                                       {"mixed", Precision::mixed,
+                                        "elements in float, nodes in double: faster, half the memory; unfit "
+                                        "for small strains (docs/performance.md)"}}),
+                    "double", "Of the forces of its elements.")
           .optional("groups", &BodyConfig::groups, named(group_table()), "{tendon: {density: 1200}}",
                     "Volume groups of the mesh that differ from the body, by name.")
           .then(drop_what_is_none);

@@ -154,7 +154,7 @@ ElasticProperties properties_of(const BodyConfig& body, int group) {
     material = own.material.value_or(material);
     if (own.damping) damping = own.damping;
   }
-  return {density, material_of(material), damping_of(damping, material)};
+  return {density, material_of(material), damping_of(damping, material), body.precision};
 }
 
 BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {

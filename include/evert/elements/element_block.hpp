@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/core/aligned.hpp"
 #include "evert/core/index.hpp"
+#include "evert/core/number_array.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/mesh.hpp"
 
@@ -33,8 +34,8 @@ struct ElementBlock {
   BatchRange boundary;              ///< the others
   AlignedVector<LocalIndex> nodes;  ///< [batch][node of the cell][lane]
   ShapeData shape_data = ShapeData::node_gradients;
-  AlignedVector<double> shapes;   ///< [batch][point][node 1…][3][lane] or [batch][point][column][row][lane]
-  AlignedVector<double> volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
+  NumberArray shapes;   ///< [batch][point][node 1…][3][lane] or [batch][point][column][row][lane]
+  NumberArray volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
   std::vector<LocalIndex>
       cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding
 
@@ -47,7 +48,8 @@ struct ElementBlock {
 /// is safe. Throws UserError when a cell has no positive rest volume, with count and first numbers.
 [[nodiscard]] ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes,
                                               LocalIndex interior, std::span<const Vec3d> rest_positions,
-                                              int lanes, ShapeData shape_data = ShapeData::node_gradients);
+                                              int lanes, ShapeData shape_data = ShapeData::node_gradients,
+                                              Precision precision = Precision::full);
 
 /// Cells with a quadrature point at which the rest volume is zero, negative or not finite; ascending.
 [[nodiscard]] std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const LocalIndex> nodes,

@@ -20,6 +20,21 @@ struct StableStep {
   double damped = 0;    ///< [s] the same with this block's damping taken implicitly; ≥ undamped
 };
 
+/// The nodes of one cell, by value: batches do not keep them together.
+class CellNodes {
+ public:
+  explicit CellNodes(std::size_t count) : count_(count) {}
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] LocalIndex& operator[](std::size_t a) { return nodes_[a]; }
+  [[nodiscard]] LocalIndex operator[](std::size_t a) const { return nodes_[a]; }
+  [[nodiscard]] auto begin() const { return nodes_.begin(); }
+  [[nodiscard]] auto end() const { return nodes_.begin() + static_cast<std::ptrdiff_t>(count_); }
+
+ private:
+  std::array<LocalIndex, 10> nodes_{};  // tet10 has the most
+  std::size_t count_;
+};
+
 /// Forces of one (element type × material × damping) block; made by make_elastic_block for the CPU it runs
 /// on. None of its calls is collective. No call allocates except the constructor and set_material.
 class ElasticBlock {
@@ -43,7 +58,7 @@ class ElasticBlock {
   /// ElementBlock::cell_of_lane.
   virtual void damping_matrix(LocalIndex cell, std::span<double> matrix) const = 0;
   /// Local node numbers of a cell.
-  [[nodiscard]] virtual std::span<const LocalIndex> cell_nodes(LocalIndex cell) const = 0;
+  [[nodiscard]] virtual CellNodes cell_nodes(LocalIndex cell) const = 0;
   [[nodiscard]] virtual LocalIndex cells() const = 0;
 
   /// Elastic energy at `x` [J].
@@ -81,12 +96,17 @@ struct ElasticCells {
   double density = 0;                 ///< [kg/m^3]
 };
 
+/// In mixed precision positions and forces stay double; rest data, damping state and all arithmetic between
+/// are float, so that forces carry an error of about 1e-7 of the elastic moduli whatever the strain
+/// (docs/performance.md).
+///
 /// Makes the block for the best instruction set of this CPU (x86-64-v2, v3, v4). `rest_positions` per local
 /// node. Throws UserError when a cell has zero or negative rest volume.
 [[nodiscard]] std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
                                                                std::span<const Vec3d> rest_positions,
                                                                const Material& material,
-                                                               const Damping& damping);
+                                                               const Damping& damping,
+                                                               Precision precision = Precision::full);
 
 /// Adds each cell's mass, shared over its nodes, to `mass` (per local node, [kg]); stays positive.
 void add_lumped_mass(const ElasticCells& cells, std::span<const Vec3d> rest_positions,

@@ -15,6 +15,7 @@ struct ElasticProperties {
   double density = 0;  ///< [kg/m^3]
   Material material;
   Damping damping;
+  Precision precision = Precision::full;
 };
 
 class ElasticForces {

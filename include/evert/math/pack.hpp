@@ -139,6 +139,16 @@ EVERT_ALWAYS_INLINE T load(const scalar_t<T>* from) {
   }
 }
 
+/// The same of floats, whatever T holds.
+template <Real T>
+EVERT_ALWAYS_INLINE T load_floats(const float* from) {
+  if constexpr (std::floating_point<T>) {
+    return T(*from);
+  } else {
+    return T(std::remove_cvref_t<decltype(T().simd())>(from, stdx::element_aligned));
+  }
+}
+
 /// Writes lanes_v<T> consecutive numbers.
 template <Real T>
 EVERT_ALWAYS_INLINE void store(const T& x, scalar_t<T>* to) {

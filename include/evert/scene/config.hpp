@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/core/number_array.hpp"
 #include "evert/materials/damping.hpp"
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
@@ -129,6 +130,7 @@ struct BodyConfig {
   std::optional<StartConfig> start;
   MaterialConfig material;
   std::optional<DampingConfig> damping;
+  Precision precision = Precision::full;
   std::vector<GroupConfig> groups;
 };
 

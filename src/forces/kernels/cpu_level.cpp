@@ -9,29 +9,34 @@
 
 namespace evert::kernels {
 
-// One definition of find() per level, all of level.cpp.
+// One definition each per level, all of level.cpp and level_mixed.cpp.
 #if defined(__x86_64__)
 namespace v2 {
 ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-}
+ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
+}  // namespace v2
 namespace v3 {
 ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-}
+ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
+}  // namespace v3
 namespace v4 {
 ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-}
+ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
+}  // namespace v4
 #else
 namespace baseline {
 ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-}
+ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
+}  // namespace baseline
 #endif
 
 std::span<const CpuLevel> cpu_levels() {
 #if defined(__x86_64__)
-  static const CpuLevel levels[] = {
-      {"v2", true, v2::find}, {"v3", cpu_supports("v3"), v3::find}, {"v4", cpu_supports("v4"), v4::find}};
+  static const CpuLevel levels[] = {{"v2", true, v2::find, v2::find_mixed},
+                                    {"v3", cpu_supports("v3"), v3::find, v3::find_mixed},
+                                    {"v4", cpu_supports("v4"), v4::find, v4::find_mixed}};
 #else
-  static const CpuLevel levels[] = {{"baseline", true, baseline::find}};
+  static const CpuLevel levels[] = {{"baseline", true, baseline::find, baseline::find_mixed}};
 #endif
   return levels;
 }

@@ -40,7 +40,7 @@ const std::vector<Mistake> mistakes{
      "friction or velocity"},
     {"merge_key", "density: 1000", "<<: {density: 1000}",
      "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, transform, "
-     "density, velocity, spin, start, material, damping or groups"},
+     "density, velocity, spin, start, material, damping, precision or groups"},
     // duplicate keys
     {"duplicate_key", "density: 1000", "density: 1000\n    density: 1000",
      "scene.yaml:14: duplicate key 'density', first given at scene.yaml:13"},

@@ -1,3 +1,5 @@
+#include "evert/scene/build.hpp"
+
 #include <gtest/gtest.h>
 
 #include "scenes.hpp"
@@ -166,6 +168,15 @@ TEST(Load, takes_none_for_absent) {
   const auto scene = parse_scene(text, "scene.yaml");
   EXPECT_FALSE(scene.bodies[0].damping);
   EXPECT_FALSE(scene.bodies[0].start);
+}
+
+TEST(Load, reads_the_precision_of_a_body) {
+  EXPECT_EQ(least().bodies[0].precision, Precision::full);
+  const auto scene = parse_scene(least_scene + "    precision: mixed\n", "scene.yaml");
+  EXPECT_EQ(scene.bodies[0].precision, Precision::mixed);
+  EXPECT_EQ(properties_of(scene.bodies[0], -1).precision, Precision::mixed);
+  EXPECT_EQ(testing::complaint(least_scene + "    precision: float\n"),
+            "scene.yaml:8: bodies.ball.precision: 'float' is not allowed: must be double or mixed");
 }
 
 TEST(Load, names_the_output_after_the_scene) {

@@ -8,15 +8,16 @@
 
 namespace evert::kernels {
 
-/// The arrays of an ElementBlock and what goes with it, as the kernels see them.
+/// The arrays of an ElementBlock and what goes with it, as the kernels see them. `void` stands for the scalar
+/// of the kernels that the block was made for, double or float.
 struct BlockArrays {
   const LocalIndex* nodes;         ///< [batch][node][lane]
-  const double* shapes;            ///< [batch] of ShapeGradients::numbers
-  const double* volumes;           ///< [batch][point][lane]
+  const void* shapes;              ///< [batch] of ShapeGradients::numbers
+  const void* volumes;             ///< [batch][point][lane]
   const LocalIndex* cell_of_lane;  ///< [batch][lane]
-  const double* rest_stiffness;    ///< [batch][lane] λ_e of the stable step, see tangent_bound.hpp [1/s²]
-  const double* spin_stiffness;    ///< the same for damped spin, see stable_steps [1/s²]
-  double* damping_state;           ///< see damping_kernels.hpp
+  const float* rest_stiffness;     ///< [batch][lane] λ_e of the stable step, see tangent_bound.hpp [1/s²]
+  const float* spin_stiffness;     ///< the same for damped spin, see stable_steps [1/s²]
+  void* damping_state;             ///< see damping_kernels.hpp
 };
 
 /// The model that the kernel was chosen by.
@@ -36,13 +37,14 @@ struct CellBatch {
 
   const LocalIndex* nodes;
   ShapeGradients<T, element> shape;
-  const double* volumes;
+  const scalar_t<T>* volumes;
 
   EVERT_ALWAYS_INLINE CellBatch(const BlockArrays& block, LocalIndex batch)
       : nodes(block.nodes + static_cast<std::size_t>(batch) * element.nodes * lanes),
-        shape{block.shapes +
+        shape{static_cast<const scalar_t<T>*>(block.shapes) +
               static_cast<std::size_t>(batch) * points * decltype(shape)::numbers_per_point * lanes},
-        volumes(block.volumes + static_cast<std::size_t>(batch) * points * lanes) {}
+        volumes(static_cast<const scalar_t<T>*>(block.volumes) +
+                static_cast<std::size_t>(batch) * points * lanes) {}
 
   /// |∂X/∂ξ| W at point q.
   EVERT_ALWAYS_INLINE T volume(std::size_t q) const { return load<T>(volumes + q * lanes); }

@@ -14,6 +14,8 @@ struct CpuLevel {
   bool supported;         ///< this CPU runs it
   /// The kernels of a kind of block; `lanes` is 0 in the answer for a cell type without a reference element.
   ElasticKernels (*find)(CellType type, const Material& material, DampingModel damping);
+  /// The same in mixed precision: twice as many cells to a batch.
+  ElasticKernels (*find_mixed)(CellType type, const Material& material, DampingModel damping);
 };
 
 /// Those compiled in, narrowest first; the first runs on every CPU that this binary starts on.

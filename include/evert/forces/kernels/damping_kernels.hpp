@@ -27,10 +27,10 @@ inline constexpr std::size_t damping_numbers =
 template <Real T, const auto& element, DampingModel damping>
 struct DampingState {
   static constexpr std::size_t lanes = lanes_v<T>;
-  double* numbers;
+  scalar_t<T>* numbers;
 
   EVERT_ALWAYS_INLINE DampingState(const BlockArrays& block, LocalIndex batch)
-      : numbers(block.damping_state +
+      : numbers(static_cast<scalar_t<T>*>(block.damping_state) +
                 static_cast<std::size_t>(batch) * damping_numbers<element, damping> * lanes) {}
 
   /// h_a, to be used like the gradients at rest.

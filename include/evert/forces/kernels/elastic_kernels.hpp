@@ -12,6 +12,7 @@ namespace kernels {
 /// Named after the calls of ElasticBlock that they serve.
 struct ElasticKernels {
   int lanes = 0;                                     ///< cells per batch that the functions expect
+  Precision precision = Precision::full;             ///< of the numbers that they expect
   ShapeData shape_data = ShapeData::node_gradients;  ///< what they expect of the rest shape
   int damping_numbers = 0;                           ///< numbers of damping state per cell
   bool rotated_gradients = false;  ///< the damping state holds h_a, in the form of the shape data, not A

@@ -4,6 +4,8 @@
 #include "evert/forces/kernels/force_kernels.hpp"
 #include "evert/forces/kernels/measure_kernels.hpp"
 
+#include <type_traits>
+
 /// Picks the instances of the kernel templates. For inclusion by the sources compiled once per CPU level, and
 /// by tests that run the kernels on scalars.
 namespace evert::kernels {
@@ -12,6 +14,7 @@ template <Real T, const auto& element, class Model, DampingModel damping>
 constexpr ElasticKernels kernels_of() {
   ElasticKernels table{
       .lanes = static_cast<int>(lanes_v<T>),
+      .precision = std::is_same_v<scalar_t<T>, float> ? Precision::mixed : Precision::full,
       .shape_data = element.tensor_product ? ShapeData::inverse_jacobian : ShapeData::node_gradients,
       .damping_numbers = static_cast<int>(damping_numbers<element, damping>),
       .rotated_gradients = keeps_rotated_gradients<element, damping>,

@@ -43,15 +43,17 @@ EVERT_ALWAYS_INLINE T energy_density(const Model& model, const PointRun<T>& run,
 template <Real T, const auto& element, class Model>
 EVERT_ALWAYS_INLINE double sum_of_energy(const Model& model, const BlockArrays& block, const double* x,
                                          BatchRange batches) {
-  T sum = T(0.0);
+  double sum = 0;  // of many cells: floats would not do
   for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
     diagonalize(run, points);
+    T of_run = T(0.0);
     for (std::size_t i = 0; i < points; ++i) {
       const CellBatch<T, element> batch(block, piece.begin + static_cast<LocalIndex>(i / batch.points));
-      sum += batch.volume(i % batch.points) * energy_density(model, run, i);
+      of_run += batch.volume(i % batch.points) * energy_density(model, run, i);
     }
+    sum += sum_of_lanes(of_run);
   });
-  return sum_of_lanes(sum);
+  return sum;
 }
 
 /// See ElasticBlock::energy.
@@ -67,7 +69,8 @@ EVERT_ALWAYS_INLINE T smallest_stretch(const PlaneRemainder<T>& plane) {
   const Vec3<T> sigma = principal_stretches(plane);
   const T smallest = min(min(sigma[0], sigma[1]), sigma[2]);
   const T largest = max(max(sigma[0], sigma[1]), sigma[2]);
-  return select(abs(smallest) < T(8 * std::numeric_limits<double>::epsilon()) * largest, T(0.0), smallest);
+  return select(abs(smallest) < T(8 * std::numeric_limits<scalar_t<T>>::epsilon()) * largest, T(0.0),
+                smallest);
 }
 
 /// See ElasticBlock::min_stretch.
@@ -93,7 +96,7 @@ void min_stretch(const BlockArrays& block, const double* x, double* per_cell, Ba
 template <Real T>
 EVERT_ALWAYS_INLINE mask_t<T> determinant_is_uncertain(const Mat3<T>& f, const T& determinant_of_f) {
   const T square = contract(f, f);
-  return abs(determinant_of_f) <= T(16 * std::numeric_limits<double>::epsilon()) * square * sqrt(square);
+  return abs(determinant_of_f) <= T(16 * std::numeric_limits<scalar_t<T>>::epsilon()) * square * sqrt(square);
 }
 
 /// See ElasticBlock::inverted_points. The sign of det F tells, but for runs with a point that is flat to
@@ -155,7 +158,7 @@ EVERT_STAGE void kept_strain_rate_stage(const BlockArrays& block, const double* 
     const auto edges = batch.edges_of(v);
     if constexpr (keeps_rotated_gradients<element, rotated>) {
       state.rotated_shape().field_gradients(edges, [&](std::size_t q, const Mat3<T>& scaled_rate) {
-        const T volume = max(batch.volume(q), T(std::numeric_limits<double>::min()));  // 0 in padding lanes
+        const T volume = max(batch.volume(q), T(std::numeric_limits<scalar_t<T>>::min()));  // 0 in padding lanes
         fastest_squared = max(fastest_squared, symmetric_square(scaled_rate) / volume);
       });
     } else {
@@ -211,7 +214,7 @@ struct BatchSteps {
 template <Real T>
 EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, const T& rest_stiffness,
                                                const T& spin_stiffness, const T& time) {
-  const T tiny = T(1e-200);
+  const T tiny = T(std::numeric_limits<float>::min());
   const T lambda = max(rest_stiffness, tiny);  // 0 in padding lanes
   const T undamped = T(2.0) / sqrt(max(bound.total, T(1.0)) * lambda);
   const T stretching = max(bound.stretching, T(1.0));
@@ -225,7 +228,7 @@ EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, con
   const T beyond = T(2.0) * (half_damping + sqrt(half_damping * half_damping + stiffness)) / stiffness;
   const T outweighed = T(2.0) * time / stretching;
   const T damped = select(beyond > outweighed, beyond, min(outweighed, spinning));
-  const auto finite = bound.total < T(unresolvable);
+  const auto finite = bound.total < T(unresolvable<scalar_t<T>>);
   return {undamped, select(finite, max(damped, undamped), undamped)};
 }
 
@@ -234,7 +237,7 @@ template <Real T, const auto& element, class Model>
 StableStep stable_step(const BlockArrays& block, const Material& material, const Damping& damping,
                        const double* x, BatchRange batches) {
   const Model model = model_of<Model>(material);
-  T undamped = T(std::numeric_limits<double>::infinity());
+  T undamped = T(std::numeric_limits<scalar_t<T>>::infinity());
   T damped = undamped;
   if (!(model.lame.mu > 0)) return {lane(undamped, 0), lane(damped, 0)};  // E = 0: nothing limits the step
   const T time = T(damping_time(damping, model.lame));
@@ -242,8 +245,8 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
     diagonalize(run, points);
     for (std::size_t i = 0; i < points; ++i) {
       const auto batch = static_cast<std::size_t>(piece.begin) + i / element.points;
-      const T stiffness = load<T>(block.rest_stiffness + batch * lanes_v<T>);
-      const T spin_stiffness = load<T>(block.spin_stiffness + batch * lanes_v<T>);
+      const T stiffness = load_floats<T>(block.rest_stiffness + batch * lanes_v<T>);
+      const T spin_stiffness = load_floats<T>(block.spin_stiffness + batch * lanes_v<T>);
       const Vec3<T> sigma = principal_stretches(run.plane[i]);
       T credited = time;
       if (damping.model == DampingModel::objective) {

@@ -14,20 +14,20 @@
 namespace evert::kernels {
 
 template <Real T>
-EVERT_ALWAYS_INLINE void store_vector(const Vec3<T>& v, double* to) {
+EVERT_ALWAYS_INLINE void store_vector(const Vec3<T>& v, scalar_t<T>* to) {
   for (std::size_t i = 0; i < 3; ++i) store(v[i], to + i * lanes_v<T>);
 }
 template <Real T>
-EVERT_ALWAYS_INLINE Vec3<T> load_vector(const double* from) {
+EVERT_ALWAYS_INLINE Vec3<T> load_vector(const scalar_t<T>* from) {
   return {load<T>(from), load<T>(from + lanes_v<T>), load<T>(from + 2 * lanes_v<T>)};
 }
 
 template <Real T>
-EVERT_ALWAYS_INLINE void store_matrix(const Mat3<T>& m, double* to) {
+EVERT_ALWAYS_INLINE void store_matrix(const Mat3<T>& m, scalar_t<T>* to) {
   for (std::size_t j = 0; j < 3; ++j) store_vector(m.column[j], to + 3 * j * lanes_v<T>);
 }
 template <Real T>
-EVERT_ALWAYS_INLINE Mat3<T> load_matrix(const double* from) {
+EVERT_ALWAYS_INLINE Mat3<T> load_matrix(const scalar_t<T>* from) {
   return {load_vector<T>(from), load_vector<T>(from + 3 * lanes_v<T>), load_vector<T>(from + 6 * lanes_v<T>)};
 }
 
@@ -36,7 +36,7 @@ template <Real T, const auto& element>
 struct NodeGradients {
   static constexpr std::size_t numbers_per_point = 3 * (element.nodes - 1);
 
-  const double* numbers;  ///< [point][node 1…][3][lane]
+  const scalar_t<T>* numbers;  ///< [point][node 1…][3][lane]
 
   /// ∂N_a/∂X at point q, for a ≥ 1.
   EVERT_ALWAYS_INLINE Vec3<T> gradient(std::size_t q, std::size_t a) const {
@@ -44,7 +44,7 @@ struct NodeGradients {
   }
 
   /// Writes the gradients at point q, each multiplied by `m`, to `to`, laid out like `numbers`.
-  EVERT_ALWAYS_INLINE void store_transformed(std::size_t q, const Mat3<T>& m, double* to) const {
+  EVERT_ALWAYS_INLINE void store_transformed(std::size_t q, const Mat3<T>& m, scalar_t<T>* to) const {
     for (std::size_t a = 1; a < element.nodes; ++a) {
       store_vector(m * gradient(q, a), to + (q * numbers_per_point + 3 * (a - 1)) * lanes_v<T>);
     }
@@ -84,7 +84,7 @@ struct InverseJacobians {
   /// A copy of its own for each CPU level (docs/design/cpu-levels.md).
   static constexpr auto reference_gradients_of_nodes = element.gradients;
 
-  const double* numbers;  ///< [point][column][row][lane]
+  const scalar_t<T>* numbers;  ///< [point][column][row][lane]
 
   EVERT_ALWAYS_INLINE Mat3<T> inverse_jacobian(std::size_t q) const {
     return load_matrix<T>(numbers + q * numbers_per_point * lanes_v<T>);
@@ -94,10 +94,11 @@ struct InverseJacobians {
   EVERT_ALWAYS_INLINE Vec3<T> gradient(std::size_t q, std::size_t a) const {
     const Vec3d& of_reference = reference_gradients_of_nodes[q][a];
     return transpose_times(inverse_jacobian(q),
-                           Vec3<T>{T(of_reference[0]), T(of_reference[1]), T(of_reference[2])});
+                           Vec3<T>{T(scalar_t<T>(of_reference[0])), T(scalar_t<T>(of_reference[1])),
+                                   T(scalar_t<T>(of_reference[2]))});
   }
 
-  EVERT_ALWAYS_INLINE void store_transformed(std::size_t q, const Mat3<T>& m, double* to) const {
+  EVERT_ALWAYS_INLINE void store_transformed(std::size_t q, const Mat3<T>& m, scalar_t<T>* to) const {
     store_matrix(times_transpose(inverse_jacobian(q), m), to + q * numbers_per_point * lanes_v<T>);
   }
 

@@ -34,6 +34,12 @@ struct TangentBound {
   T skew;  ///< the modulus k of the skew part, in units of 2μ
 };
 
+/// Of the square of a spread: its third inverse root must stay finite.
+template <class Scalar>
+inline constexpr Scalar smallest_spread = Scalar(1e-60);
+template <>
+inline constexpr float smallest_spread<float> = 1e-24F;
+
 /// An upper bound of the largest eigenvalue of a symmetric matrix, exact where the other two are equal and at
 /// most 2 % above otherwise (relative to the spread): mean + 2 deviations, then Newton on the characteristic
 /// polynomial, which comes down to the largest root from above.
@@ -41,7 +47,7 @@ template <Real T>
 EVERT_ALWAYS_INLINE T largest_eigenvalue_bound(const Mat3<T>& a) {
   const T mean = T(1.0 / 3) * trace(a);
   const Mat3<T> deviator = a - mean * identity<T>();
-  const T spread = sqrt(max(T(1.0 / 6) * contract(deviator, deviator), T(1e-60)));
+  const T spread = sqrt(max(T(1.0 / 6) * contract(deviator, deviator), T(smallest_spread<scalar_t<T>>)));
   // Roots of x³ − 3x − 2g, g = det(deviator) / (2 spread³), lie in [−2, 2].
   const T unit = T(1.0) / spread;
   const T g = T(0.5) * determinant(deviator) * (unit * unit * unit);
@@ -71,13 +77,20 @@ EVERT_ALWAYS_INLINE Mat3<T> relative_to_rest(const Mat3<T>& d, const Lame& lame)
 }
 
 /// Axes closer than this have the limit of the divided difference.
-inline constexpr double equal_stretches = 1e-5;
+template <class Scalar>
+inline constexpr Scalar equal_stretches = Scalar(1e-5);
+/// Here the rounding of the stresses, 1e-7 of the modulus, and the error of the limit are alike.
+template <>
+inline constexpr float equal_stretches<float> = 1e-3F;
 /// The inverted axis may switch where σ_i + σ_j = 0: the stress jumps there, and no step resolves it. The
 /// skew stiffness is not followed any closer.
 inline constexpr double smallest_stretch_sum = 0.2;
 
 /// Stands for the stiffness of a state that is not finite: it shrinks the step to nothing.
-inline constexpr double unresolvable = 1e200;
+template <class Scalar>
+inline constexpr Scalar unresolvable = Scalar(1e200);
+template <>
+inline constexpr float unresolvable<float> = 1e30F;
 
 /// `model` at the principal stretches `sigma`, in any order, in an element of `points` quadrature points.
 /// `model.lame` must be positive definite (E > 0).
@@ -90,7 +103,7 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
   const T in_shear = T(1 / (2 * model.lame.mu));
   for (const auto& [i, j] : std::array<std::array<std::size_t, 2>, 3>{{{0, 1}, {0, 2}, {1, 2}}}) {
     const T difference = sigma[i] - sigma[j];
-    const auto equal = abs(difference) < T(equal_stretches);
+    const auto equal = abs(difference) < T(equal_stretches<scalar_t<T>>);
     const T limit = T(0.5) * (derivative(i, i) + derivative(j, j)) - derivative(i, j);
     const T shear = select(equal, limit, (stress[i] - stress[j]) / select(equal, T(1.0), difference));
     stretching = max(stretching, in_shear * shear);
@@ -99,8 +112,8 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
   const double along_gradient = std::max(model.lame.lambda, 0.0) / (points == 1 ? 1 : 3);
   const T spin = T(2 * model.lame.mu / (2 * model.lame.mu + along_gradient)) * skew;
   const T total = min(max(stretching, skew), stretching + spin);
-  const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable);
-  return {stretching, spin, select(finite, total, T(unresolvable)), skew};
+  const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable<scalar_t<T>>);
+  return {stretching, spin, select(finite, total, T(unresolvable<scalar_t<T>>)), skew};
 }
 
 }  // namespace evert::kernels
