@@ -4,7 +4,9 @@
 
 #include "bodies.hpp"
 #include "reference_forces.hpp"
+#include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace evert::test {
 namespace {
@@ -204,6 +206,45 @@ TEST(ElasticForces, AreBitwiseRepeatable) {
         const NodalValues again = forces(*first, state.x);
         EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
         EXPECT_EQ(std::memcmp(a.data(), again.data(), a.size() * sizeof(double)), 0);
+      }
+    }
+  }
+}
+
+/// Another order of the cells makes other batches, and sums in another order.
+TEST(ElasticForces, DoNotDependOnTheOrderOfTheCells) {
+  std::mt19937_64 random(17);
+  for (const CellType type : both_elements) {
+    const Body body = small_body(type);
+    const std::size_t per_cell = body.nodes_per_cell();
+    std::vector<LocalIndex> order(static_cast<std::size_t>(body.cells()));
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), random);
+    Body shuffled = body;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const auto cell = body.cell(order[i]);
+      std::copy(cell.begin(), cell.end(), shuffled.nodes.begin() + static_cast<std::ptrdiff_t>(i * per_cell));
+    }
+    const NodalValues v = random_velocities(body.rest.size());
+    for (const Material& material : all_materials()) {
+      for (const auto& level : supported_levels()) {
+        const auto block = level_block(level, body, material, rotated_damping, 7);
+        const auto other = level_block(level, shuffled, material, rotated_damping, 3);
+        for (const State& state : awkward_states(body)) {
+          if (!state.unique) continue;
+          const NodalValues expected = forces(*block, state.x), f = forces(*other, state.x);
+          const ReferenceForces reference = reference_forces(body, material, state.x);
+          for (std::size_t i = 0; i + 1 < f.size(); ++i) {
+            EXPECT_NEAR(f[i], expected[i], 1e-14 * static_cast<double>(reference.stiffness[i / 3]))
+                << label(body, material, state.name) << ", " << level.name;
+          }
+          const NodalValues damping = damping_product(*block, v);
+          EXPECT_LE(largest_difference(damping_product(*other, v), damping), 1e-14 * largest(damping))
+              << label(body, material, state.name) << ", " << level.name;
+          const double energy = block->energy(state.x.data());
+          EXPECT_NEAR(other->energy(state.x.data()), energy, 1e-13 * energy)
+              << label(body, material, state.name) << ", " << level.name;
+        }
       }
     }
   }
