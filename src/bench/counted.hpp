@@ -14,6 +14,7 @@ struct OperationLog {
   double divisions = 0;  ///< and square roots
   std::unordered_set<const double*> read;
   std::unordered_set<const double*> written;
+  std::unordered_set<const float*> floats_read;
 };
 
 /// A double in the place of a pack of one lane. Additions, subtractions, multiplications, divisions and
@@ -36,6 +37,10 @@ class Counted {
     template <class Alignment>
     Lane(const double* from, Alignment /*tag*/) : value_(*from) {
       so_far().read.insert(from);
+    }
+    template <class Alignment>
+    Lane(const float* from, Alignment /*tag*/) : value_(*from) {
+      so_far().floats_read.insert(from);
     }
     template <class Alignment>
     void copy_to(double* to, Alignment /*tag*/) const {

@@ -157,8 +157,8 @@ void BatchedBlock::set_mass_shares(std::span<const double> shares) {
 
 std::size_t BatchedBlock::memory() const {
   return bytes(element_block_.nodes) + element_block_.shapes.bytes() + element_block_.volumes.bytes() +
-         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) + damping_state_.bytes() +
-         bytes(lane_of_cell_);
+         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) +
+         damping_state_.bytes() + bytes(lane_of_cell_);
 }
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,

@@ -9,8 +9,8 @@
 /// What the stable step of an element starts from.  PHYSICS 9, eq. (9)
 namespace evert {
 
-/// What the stable step of the cells starts from, per lane of a block, 0 in padding, rounded up to float so that a
-/// bound stays one [1/s²].
+/// What the stable step of the cells starts from, per lane of a block, 0 in padding, rounded up to float so
+/// that a bound stays one [1/s²].
 struct RestStiffness {
   AlignedVector<float> largest;  ///< λ_e
   AlignedVector<float> spin;     ///< λ_spin ≤ λ_e: 2μ V times the second largest of Γ (below)

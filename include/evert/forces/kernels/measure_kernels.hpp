@@ -158,7 +158,8 @@ EVERT_STAGE void kept_strain_rate_stage(const BlockArrays& block, const double* 
     const auto edges = batch.edges_of(v);
     if constexpr (keeps_rotated_gradients<element, rotated>) {
       state.rotated_shape().field_gradients(edges, [&](std::size_t q, const Mat3<T>& scaled_rate) {
-        const T volume = max(batch.volume(q), T(std::numeric_limits<scalar_t<T>>::min()));  // 0 in padding lanes
+        const T volume =
+            max(batch.volume(q), T(std::numeric_limits<scalar_t<T>>::min()));  // 0 in padding lanes
         fastest_squared = max(fastest_squared, symmetric_square(scaled_rate) / volume);
       });
     } else {
