@@ -123,16 +123,19 @@ FrictionError Collisions::friction_error(std::span<const double> v, std::span<co
   return error;
 }
 
-void Collisions::slide(std::span<const double> v, std::span<const double> reaction,
-                       std::span<double> right_side) {
+void Collisions::slide(std::span<const double> v, std::span<double> reaction) {
   constraints_.clear();
   for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
     const auto node = contacts_[begin].node;
     const auto velocity = node_value(v, node);
+    const auto exerted = node_value(reaction, node);
+    auto left = exerted;
     for (end = begin; end < contacts_.size() && contacts_[end].node == node; ++end) {
-      contacts_[end] = after_solve(contacts_[end], velocity, node_value(reaction, node));
-      set_node_value(right_side, node, node_value(right_side, node) + contacts_[end].friction);
+      const auto after = after_solve(contacts_[end], velocity, exerted);
+      left -= after.friction - contacts_[end].friction;
+      contacts_[end] = after;
     }
+    set_node_value(reaction, node, left);
     constrain(std::span(contacts_).subspan(begin, end - begin), velocity);
   }
 }

@@ -86,8 +86,8 @@ void BatchedBlock::add_damping(const double* v, double* out, double factor, Batc
   if (damped()) kernels_.add_damping(arrays_, damping_, factor, v, out, batches);
 }
 
-void BatchedBlock::add_damping_diagonal(double* blocks, double factor) const {
-  if (damped()) kernels_.add_damping_diagonal(arrays_, damping_, factor, blocks, all());
+void BatchedBlock::add_damping_diagonal(double* normal, double* shear, double factor) const {
+  if (damped()) kernels_.add_damping_diagonal(arrays_, damping_, factor, normal, shear, all());
 }
 
 void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) const {

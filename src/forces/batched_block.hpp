@@ -23,7 +23,7 @@ class BatchedBlock final : public ElasticBlock {
   void update(const double* x, double* f, BatchRange batches) override;
   [[nodiscard]] bool damped() const override { return kernels_.add_damping != nullptr; }
   void add_damping(const double* v, double* out, double factor, BatchRange batches) const override;
-  void add_damping_diagonal(double* blocks, double factor) const override;
+  void add_damping_diagonal(double* normal, double* shear, double factor) const override;
   void damping_matrix(LocalIndex cell, std::span<double> matrix) const override;
   [[nodiscard]] CellNodes cell_nodes(LocalIndex cell) const override;
   [[nodiscard]] LocalIndex cells() const override { return element_block_.cells; }

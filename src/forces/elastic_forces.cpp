@@ -77,7 +77,6 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   for (std::size_t i = 0; i < masses_.size(); ++i) masses_[i] = summed[3 * i];
 
   balance_masses(mesh_, halo_, masses_, blocks_);
-  if (damped_) local_diagonal_.resize(9 * static_cast<std::size_t>(mesh.local_nodes()));
 }
 
 void ElasticForces::update(NodeField& x, NodeField& f) {
@@ -98,20 +97,16 @@ void ElasticForces::add_damping(NodeField& v, NodeField& out, double factor) con
   out.touched();
 }
 
-void ElasticForces::damping_diagonal(std::span<double> blocks) const {
-  clear(local_diagonal_);
-  for (const auto& block : blocks_)
-    if (block != nullptr && block->damped()) block->add_damping_diagonal(local_diagonal_.data(), 1.0);
-  // Three values a node travel at a time: one column of the blocks.
-  const auto nodes = static_cast<std::size_t>(mesh_.local_nodes());
-  for (std::size_t column = 0; column < 3; ++column) {
-    auto values = scratch_.local();
-    for (std::size_t node = 0; node < nodes; ++node)
-      std::copy_n(&local_diagonal_[9 * node + 3 * column], 3, &values[3 * node]);
-    halo_.begin_add(scratch_);
-    halo_.end_add(scratch_);
-    for (std::size_t node = 0; 9 * node < blocks.size(); ++node)
-      std::copy_n(&values[3 * node], 3, &blocks[9 * node + 3 * column]);
+void ElasticForces::damping_diagonal(NodeField& normal, NodeField& shear) const {
+  clear(normal.local());
+  clear(shear.local());
+  for (const auto& block : blocks_) {
+    if (block != nullptr && block->damped())
+      block->add_damping_diagonal(normal.local().data(), shear.local().data(), 1.0);
+  }
+  for (NodeField* field : {&normal, &shear}) {
+    halo_.begin_add(*field);
+    halo_.end_add(*field);
   }
 }
 

@@ -75,8 +75,9 @@ DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForce
       elastic_(elastic),
       in_(mesh),
       out_(mesh),
-      diagonal_(9 * static_cast<std::size_t>(mesh.owned_nodes)),
-      inverse_diagonal_(diagonal_.size()) {
+      normal_(mesh),
+      shear_(mesh),
+      inverse_diagonal_(9 * static_cast<std::size_t>(mesh.owned_nodes)) {
   const PetscInt rows = 3 * mesh.owned_nodes;
   check(MatCreateShell(mesh.comm, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE, this, mat_.out()));
   check(MatSetBlockSize(mat_.get(), 3));
@@ -143,13 +144,16 @@ void DampingOperator::add_damping(Vec v, Vec out, double factor) const {
 /// work(node, block) for the 3×3 diagonal block of A at each owned node, by columns.
 template <class Work>
 void DampingOperator::for_each_diagonal_block(Work&& work) const {
-  if (!diagonal_valid_) elastic_.damping_diagonal(diagonal_);
+  if (!diagonal_valid_) elastic_.damping_diagonal(normal_, shear_);
   diagonal_valid_ = true;
   const auto mass = elastic_.masses();
-  std::array<double, 9> block{};
   auto constraint = constraints_.begin();
   for (std::size_t node = 0; node < mass.size(); ++node) {
-    for (std::size_t k = 0; k < 9; ++k) block[k] = factor_ * diagonal_[9 * node + k];
+    const auto [xx, yy, zz] =
+        (factor_ * node_value(normal_.owned(), static_cast<std::ptrdiff_t>(node))).components;
+    const auto [yz, xz, xy] =
+        (factor_ * node_value(shear_.owned(), static_cast<std::ptrdiff_t>(node))).components;
+    std::array<double, 9> block{xx, xy, xz, xy, yy, yz, xz, yz, zz};
     if (constraint != constraints_.end() && static_cast<std::size_t>(constraint->node) == node)
       project_block((constraint++)->free, block.data());
     for (std::size_t k = 0; k < 9; k += 4) block[k] += mass[node];

@@ -106,6 +106,16 @@ void require_solver(KSP ksp, const std::string& preconditioner) {
                     ": must be with " + list_of(direct));
 }
 
+/// PETSc's default for CG is the norm of the preconditioned residual, which takes one more sum over the ranks
+/// in each iteration than the natural norm.
+void prefer_natural_norm(KSP ksp) {
+  PetscBool cg = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPCG, &cg));
+  PetscBool told = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, "damping_", "-ksp_norm_type", &told));
+  if (cg == PETSC_TRUE && told == PETSC_FALSE) check(KSPSetNormType(ksp, KSP_NORM_NATURAL));
+}
+
 /// GAMG keeps its first coarse spaces and eigenvalues unless told otherwise; ours change by orders of
 /// magnitude with the step and the material.
 void rebuild_multigrid(PC pc) {
@@ -140,6 +150,7 @@ KspHandle damping_ksp(MPI_Comm comm, const std::string& matrix_type) {
   require_possible(type_of(pc), matrix_type, size_of(comm));
   require_solver(ksp.get(), type_of(pc));
   require_tolerances(ksp.get());
+  prefer_natural_norm(ksp.get());
   rebuild_multigrid(pc);
   return ksp;
 }

@@ -2,6 +2,7 @@
 
 #include "evert/core/error.hpp"
 #include "evert/core/log.hpp"
+#include "evert/math/nodal.hpp"
 
 #include "damping_options.hpp"
 #include <algorithm>
@@ -32,14 +33,22 @@ class VecView {
   std::size_t size_ = 0;
 };
 
+/// Of the residual that the last solve started from.
+double first_norm(KSP ksp) {
+  const PetscReal* norms = nullptr;
+  PetscInt count = 0;
+  check(KSPGetResidualHistory(ksp, &norms, &count));
+  return count > 0 ? norms[0] : 0.0;
+}
+
 }  // namespace
 
 DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
     : mesh_(mesh), elastic_(elastic) {
-  check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, residual_.out()));
-  check(VecSetBlockSize(residual_.get(), 3));
-  check(VecDuplicate(residual_.get(), projected_.out()));
-  check(VecDuplicate(residual_.get(), correction_.out()));
+  check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, reaction_.out()));
+  check(VecSetBlockSize(reaction_.get(), 3));
+  check(VecDuplicate(reaction_.get(), projected_.out()));
+  check(VecDuplicate(reaction_.get(), correction_.out()));
   if (elastic.damped()) create_ksp();
 }
 
@@ -56,8 +65,9 @@ void DampingSolver::create_ksp() {
   }
   check(KSPSetOperators(ksp_.get(), mat, mat));
   check(KSPGetTolerances(ksp_.get(), &rtol_, &atol_, nullptr, nullptr));
-  check(VecDuplicate(residual_.get(), last_.out()));
-  check(VecDuplicate(residual_.get(), image_.out()));
+  check(KSPSetResidualHistory(ksp_.get(), nullptr, 1, PETSC_TRUE));  // the first norm, for refine()
+  check(VecDuplicate(reaction_.get(), last_.out()));
+  check(VecDuplicate(reaction_.get(), image_.out()));
 }
 
 void DampingSolver::print_options(MPI_Comm comm) {
@@ -72,35 +82,79 @@ void DampingSolver::add_damping(Vec v, Vec out, double factor) const {
   if (operator_ != nullptr) operator_->add_damping(v, out, factor);
 }
 
-/// residual_ = b − (M + s C) v.
-void DampingSolver::residual(double s, Vec b, const NodeField& v) {
-  {
-    const VecView result(residual_.get());
-    const VecView right(b);
-    const auto mass = elastic_.masses();
-    const auto velocity = v.owned();
-    for (std::size_t i = 0; i < velocity.size(); ++i)
-      result.values()[i] = right.values()[i] - mass[i / 3] * velocity[i];
-  }
-  add_damping(v.vec(), residual_.get(), -s);
-}
-
 int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,
                          DampingStart start) {
   const PhaseScope scope(Phase::damping_solve);
+  factor_ = s;
   impose(constraints, v.owned());
   v.touched();
-  residual(s, b, v);
-  check(VecCopy(residual_.get(), projected_.get()));
+  check(VecCopy(b, reaction_.get()));
+  check(VecScale(reaction_.get(), -1.0));
+  react(v.vec());
+  reference_ = 0;
+  return correct(v, constraints, start);
+}
+
+int DampingSolver::refine(NodeField& v, std::span<const NodeConstraint> constraints) {
+  const PhaseScope scope(Phase::damping_solve);
+  static_cast<void>(reaction());
+  if (impose_now(v, constraints)) react(correction_.get());
+  return correct(v, constraints, DampingStart::unknown);
+}
+
+std::span<double> DampingSolver::reaction() {
+  if (!reacted_) react(correction_.get());
+  reacted_ = true;
+  const VecView view(reaction_.get());
+  return view.values();
+}
+
+/// reaction_ += (M + s C) change
+void DampingSolver::react(Vec change) {
+  {
+    const VecView sum(reaction_.get());
+    const VecView velocity(change);
+    const auto mass = elastic_.masses();
+    for (std::size_t i = 0; i < sum.values().size(); ++i)
+      sum.values()[i] += mass[i / 3] * velocity.values()[i];
+  }
+  add_damping(change, reaction_.get(), factor_);
+}
+
+/// Imposes the constraints; correction_ = the change of `v`. Collective: whether any rank's changed by more
+/// than rounding, as it does where a node is held that was free.
+bool DampingSolver::impose_now(NodeField& v, std::span<const NodeConstraint> constraints) {
+  constexpr double rounding = 1e-12;
+  check(VecSet(correction_.get(), 0.0));
+  const VecView change(correction_.get());
+  int changed = 0;
+  for (const auto& c : constraints) {
+    const auto before = node_value(v.owned(), c.node);
+    const auto after = c.free * before + c.prescribed;
+    if (norm(after - before) > rounding * (norm(before) + norm(after))) changed = 1;
+    set_node_value(change.values(), c.node, after - before);
+    set_node_value(v.owned(), c.node, after);
+  }
+  v.touched();
+  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, mesh_.comm);
+  return changed != 0;
+}
+
+/// Takes −P reaction_ off by changing `v` in the free directions.
+int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constraints, DampingStart start) {
+  check(VecCopy(reaction_.get(), projected_.get()));
+  check(VecScale(projected_.get(), -1.0));
   {
     const VecView right(projected_.get());
     project(constraints, right.values());
   }
   int iterations = 0;
   if (operator_ != nullptr) {
-    operator_->set(s, constraints);
+    operator_->set(factor_, constraints);
     if (assembled_ != nullptr) assembled_->assemble();
-    iterations = correct(start);
+    const double along = start == DampingStart::along_last ? go_along_last() : 0.0;
+    iterations = iterate();
+    if (along != 0) check(VecAXPY(correction_.get(), along, last_.get()));
   } else {
     const VecView right(projected_.get());
     const VecView change(correction_.get());
@@ -108,19 +162,10 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
     for (std::size_t i = 0; i < right.values().size(); ++i)
       change.values()[i] = right.values()[i] / mass[i / 3];
   }
+  reacted_ = false;
   check(VecAXPY(v.vec(), 1.0, correction_.get()));
   impose(constraints, v.owned());  // the correction has rounding in constrained directions
   v.touched();
-  return iterations;
-}
-
-/// A correction = projected residual.
-int DampingSolver::correct(DampingStart start) {
-  double along = 0;
-  if (start == DampingStart::along_last) along = go_along_last();
-  if (start == DampingStart::unknown) reference_ = 0;
-  const int iterations = iterate();
-  if (along != 0) check(VecAXPY(correction_.get(), along, last_.get()));
   return iterations;
 }
 
@@ -186,19 +231,8 @@ int DampingSolver::iterate() {
         std::to_string(iterations) +
         " iterations); a smaller integrator.time_step, another -damping_pc_type or a larger "
         "-damping_ksp_max_it may help");
+  if (reference_ == 0) reference_ = first_norm(ksp_.get());
   return static_cast<int>(iterations);
-}
-
-std::span<const double> DampingSolver::reaction(double s) {
-  // What was left over before the correction, less what the correction brought: A δ has no mass term in
-  // constrained directions, where δ = 0.
-  check(VecScale(residual_.get(), -1.0));
-  add_damping(correction_.get(), residual_.get(), s);
-  const PetscScalar* values = nullptr;
-  check(VecGetArrayRead(residual_.get(), &values));
-  const std::span<const double> result(values, 3 * static_cast<std::size_t>(mesh_.owned_nodes));
-  check(VecRestoreArrayRead(residual_.get(), &values));
-  return result;
 }
 
 }  // namespace evert

@@ -14,31 +14,24 @@ namespace {
 constexpr int most_friction_passes = 5;
 constexpr double friction_tolerance = 1e-3;
 
-/// Hands the owned values of `vec` to `work`.
-template <class Work>
-void change_vec(Vec vec, Work&& work) {
-  PetscScalar* data = nullptr;
-  PetscInt size = 0;
-  check(VecGetLocalSize(vec, &size));
-  check(VecGetArray(vec, &data));
-  work(std::span<double>(data, static_cast<std::size_t>(size)));
-  check(VecRestoreArray(vec, &data));
-}
-
 /// Every owned component of `vec` becomes value(index, component).
 template <class Value>
 void set_vec(Vec vec, Value&& value) {
-  change_vec(vec, [&](std::span<double> values) {
-    const PhaseScope scope(Phase::vector_update, 3.0 * static_cast<double>(values.size()));
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(i, values[i]);
-  });
+  PetscScalar* values = nullptr;
+  PetscInt size = 0;
+  check(VecGetLocalSize(vec, &size));
+  check(VecGetArray(vec, &values));
+  {
+    const PhaseScope scope(Phase::vector_update, 3.0 * size);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) values[i] = value(i, values[i]);
+  }
+  check(VecRestoreArray(vec, &values));
 }
 
 }  // namespace
 
 Newmark::Newmark(const System& system) : solver_(system.mesh, system.elastic), predicted_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
-  check(VecDuplicate(right_.get(), rubbed_right_.out()));
   constraints_.reserve(system.masses().size());
 }
 
@@ -122,18 +115,13 @@ bool obeys_coulomb(const System& system, std::span<const double> reaction) {
 int Newmark::rub(System& system) {
   auto& collisions = system.collisions;
   int iterations = 0;
-  Vec3d friction{};
-  auto reaction = solver_.reaction(implicit_);
+  auto reaction = solver_.reaction();
   for (int pass = 0; pass < most_friction_passes; ++pass) {
     if (obeys_coulomb(system, reaction)) break;
-    check(VecCopy(right_.get(), rubbed_right_.get()));
-    change_vec(rubbed_right_.get(),
-               [&](std::span<double> b) { collisions.slide(system.v.owned(), reaction, b); });
-    friction = collisions.friction();
+    collisions.slide(system.v.owned(), reaction);
     join(prescribed_, collisions.constraints(), constraints_);
-    iterations +=
-        solver_.solve(implicit_, rubbed_right_.get(), system.v, constraints_, DampingStart::refinement);
-    reaction = solver_.reaction(implicit_);
+    iterations += solver_.refine(system.v, constraints_);
+    reaction = solver_.reaction();
   }
   collisions.stop_reversed(system.v.owned());
   impose(prescribed_, system.v.owned());
@@ -148,7 +136,8 @@ int Newmark::rub(System& system) {
   };
   const auto by_prescription = exerted(prescribed_);
   system.impulses.constraint += by_prescription;
-  system.impulses.contact += exerted(constraints_) - by_prescription + friction + collisions.impulse();
+  system.impulses.contact +=
+      exerted(constraints_) - by_prescription + collisions.friction() + collisions.impulse();
   return iterations;
 }
 

@@ -49,16 +49,16 @@ class Collisions {
                                              std::span<const double> reaction) const;
 
   /// Friction after such a solve: nodes whose tangential reaction is more than Coulomb allows are let go,
-  /// those that have turned round are held, and `right_side`, b per owned node, gets the impulses of friction
-  /// on those that slide. constraints() then holds for a solve with it.
-  void slide(std::span<const double> v, std::span<const double> reaction, std::span<double> right_side);
+  /// those that have turned round are held, and the impulses of friction on those that slide go to b: what
+  /// changes of them is taken off `reaction`. constraints() then holds for a solve with that b.
+  void slide(std::span<const double> v, std::span<double> reaction);
 
   /// After the last solve: friction stops a node and never turns it round.
   void stop_reversed(std::span<double> v);
 
   /// Nodes that collided in the last resolve() on this rank.
   [[nodiscard]] LocalIndex contacts() const { return static_cast<LocalIndex>(constraints_.size()); }
-  /// Sum of the impulses that the last slide() put on the right side [N s]; this rank's share.
+  /// Sum of the impulses that slide() has put on b since resolve() [N s]; this rank's share.
   [[nodiscard]] Vec3d friction() const;
   /// Impulse of impacts (resolve) and stops (stop_reversed) in the last step [N s]; this rank's share.
   [[nodiscard]] Vec3d impulse() const { return impulse_; }

@@ -52,8 +52,9 @@ class ElasticBlock {
   [[nodiscard]] virtual bool damped() const = 0;
   /// out += factor · C v with C from the last update (symmetric positive semidefinite).  paper A, section 6.2
   virtual void add_damping(const double* v, double* out, double factor, BatchRange batches) const = 0;
-  /// Adds factor · the 3×3 diagonal blocks of C, 9 numbers by columns per local node.
-  virtual void add_damping_diagonal(double* blocks, double factor) const = 0;
+  /// Adds factor · the symmetric 3×3 diagonal blocks of C per local node: xx yy zz to `normal`, yz xz xy to
+  /// `shear`.
+  virtual void add_damping_diagonal(double* normal, double* shear, double factor) const = 0;
   /// One cell's damping matrix, dense row-major 3n×3n, for assembly. `cell` counts as in
   /// ElementBlock::cell_of_lane.
   virtual void damping_matrix(LocalIndex cell, std::span<double> matrix) const = 0;

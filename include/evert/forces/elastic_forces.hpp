@@ -32,8 +32,9 @@ class ElasticForces {
   /// scratch.
   void add_damping(NodeField& v, NodeField& out, double factor) const;
 
-  /// Collective. Owned 3×3 diagonal blocks of C, 9 numbers by columns per owned node.
-  void damping_diagonal(std::span<double> blocks) const;
+  /// Collective. The symmetric 3×3 diagonal blocks of C at owned nodes: xx yy zz in `normal`, yz xz xy in
+  /// `shear`. Their ghosts are scratch.
+  void damping_diagonal(NodeField& normal, NodeField& shear) const;
 
   /// True when any block of any rank is damped.
   [[nodiscard]] bool damped() const { return damped_; }
@@ -62,7 +63,6 @@ class ElasticForces {
       blocks_;  // parallel to mesh_.cells; null where a rank has no cells
   std::vector<double> masses_;
   mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
-  mutable std::vector<double> local_diagonal_;
   bool damped_ = false;
 };
 

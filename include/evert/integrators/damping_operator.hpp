@@ -50,7 +50,7 @@ class DampingOperator {
   std::span<const NodeConstraint> constraints_;
   mutable NodeField in_, out_;
   mutable bool diagonal_valid_ = false;
-  mutable std::vector<double> diagonal_;          // of C
+  mutable NodeField normal_, shear_;              // diagonal blocks of C: xx yy zz, yz xz xy
   mutable std::vector<double> inverse_diagonal_;  // of A
   MatHandle mat_;
 };

@@ -11,7 +11,6 @@ namespace evert {
 enum class DampingStart {
   unknown,     ///< nothing
   along_last,  ///< it resembles that of the last solve, up to its size
-  refinement,  ///< the last solve again, with other constraints or another right side
 };
 
 /// Solves (M + s C) v = b for the velocities of the unconstrained directions, by PETSc's conjugate gradients
@@ -19,7 +18,8 @@ enum class DampingStart {
 ///
 /// `-damping_mat_type shell|baij|sbaij|aij` chooses the operator (default shell, matrix-free, preconditioned
 /// by its point blocks); all of PETSc's `-damping_ksp_*` and `-damping_pc_*` apply. `-damping_ksp_rtol` is
-/// relative to the residual of the starting guess, that is to the change of momentum that the step asks for.
+/// relative to the residual of the starting guess, that is to the change of momentum that the step asks for,
+/// in the norm of the preconditioner (PETSc's natural one) where the method knows it.
 class DampingSolver {
  public:
   /// Collective. Reads the options; throws UserError for one that cannot work.
@@ -32,14 +32,19 @@ class DampingSolver {
   void invalidate();
 
   /// Collective. On entry `v` is the velocity before; on return v = P v + prescribed with P (M + s C) v = P
-  /// b. A refinement takes the tolerance of the solve that it refines, not one relative to the little that is
-  /// left. Returns the number of iterations. Throws SimulationError when PETSc reports divergence.
+  /// b. Returns the number of iterations. Throws SimulationError when PETSc reports divergence.
   int solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,
             DampingStart start = DampingStart::unknown);
 
-  /// Collective. (M + s C) v − b of the last solve: what the constraints exerted [N s]. Owned nodes, valid at
-  /// constrained nodes only.
-  [[nodiscard]] std::span<const double> reaction(double s);
+  /// Collective. What the constraints exerted in the last solve, (M + s C) v − b per owned node [N s]; beside
+  /// the constrained directions it is what the tolerance has left. Take an impulse off it to add that to b,
+  /// and then refine().
+  [[nodiscard]] std::span<double> reaction();
+
+  /// Collective. The last solve again, from the velocities that it found, for other constraints and for what
+  /// was put into its reaction(). Keeps the tolerance of that solve: not relative to the little that is left.
+  /// Costs one product less.
+  int refine(NodeField& v, std::span<const NodeConstraint> constraints);
 
   /// Collective. `out` += factor · C v.
   void add_damping(Vec v, Vec out, double factor) const;
@@ -48,21 +53,24 @@ class DampingSolver {
 
  private:
   void create_ksp();
-  void residual(double s, Vec b, const NodeField& v);
-  int correct(DampingStart start);
+  int correct(NodeField& v, std::span<const NodeConstraint> constraints, DampingStart start);
   double go_along_last();
   [[nodiscard]] double norm_of(Vec residual);
   int iterate();
+  bool impose_now(NodeField& v, std::span<const NodeConstraint> constraints);
+  void react(Vec change);
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
   std::unique_ptr<DampingOperator> operator_;    // none where nothing is damped: the solve is then a division
   std::unique_ptr<AssembledDamping> assembled_;  // with -damping_mat_type other than shell
   KspHandle ksp_;
-  VecHandle residual_, projected_, correction_;
+  VecHandle reaction_, projected_, correction_;
   VecHandle last_, image_;  // the last correction, and scratch; only where something is damped
+  bool reacted_ = true;     // reaction_ knows of correction_
+  double factor_ = 0;       // s of the last solve
   double rtol_ = 0, atol_ = 0;
-  double reference_ = 0;  // the norm that rtol_ is relative to in a refinement
+  double reference_ = 0;  // the norm that rtol_ is relative to; 0 for that of the starting residual
 };
 
 }  // namespace evert

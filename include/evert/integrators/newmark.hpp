@@ -43,7 +43,7 @@ class Newmark {
 
   DampingSolver solver_;
   NodeField predicted_;  // ṽ at the middle of the step
-  VecHandle right_, rubbed_right_;
+  VecHandle right_;
   double implicit_ = 0;                         // s of the last velocity solve, M + s C [s]
   std::span<const NodeConstraint> prescribed_;  // at the end of the step; system.prescribed owns them
   std::vector<NodeConstraint> constraints_;     // those and the normals of colliding nodes

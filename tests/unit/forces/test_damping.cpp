@@ -84,14 +84,19 @@ TEST(Damping, DenseMatricesAndDiagonalBlocksEqualTheProduct) {
           const double scale = c.cwiseAbs().maxCoeff();
           EXPECT_LE((c - assembled(*block, body.rest.size())).cwiseAbs().maxCoeff(), 1e-14 * scale)
               << label(body, damping, state.name) << ", " << level.name;
-          std::vector<double> blocks(9 * body.rest.size(), 1.0);
-          block->add_damping_diagonal(blocks.data(), 2.0);
-          for (std::size_t entry = 0; entry < blocks.size(); ++entry) {
-            const auto node = static_cast<Eigen::Index>(3 * (entry / 9));
-            const auto row = static_cast<Eigen::Index>(entry % 3);
-            const auto column = static_cast<Eigen::Index>(entry % 9 / 3);
-            EXPECT_NEAR(blocks[entry] - 1, 2 * c(node + row, node + column), 1e-14 * (2 * scale + 1))
-                << label(body, damping, state.name) << ", " << level.name;
+          NodalValues normal(3 * body.rest.size() + 1, 1.0), shear = normal;
+          block->add_damping_diagonal(normal.data(), shear.data(), 2.0);
+          const auto entry = [&](std::size_t node, std::size_t row, std::size_t column) {
+            return 1 + 2 * c(static_cast<Eigen::Index>(3 * node + row),
+                             static_cast<Eigen::Index>(3 * node + column));
+          };
+          for (std::size_t node = 0; node < body.rest.size(); ++node) {
+            for (std::size_t k = 0; k < 3; ++k) {
+              const auto where = label(body, damping, state.name) + ", " + std::string(level.name);
+              const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+              EXPECT_NEAR(normal[3 * node + k], entry(node, k, k), 1e-14 * (2 * scale + 1)) << where;
+              EXPECT_NEAR(shear[3 * node + k], entry(node, i, j), 1e-14 * (2 * scale + 1)) << where;
+            }
           }
         }
       }

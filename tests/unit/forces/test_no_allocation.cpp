@@ -36,8 +36,8 @@ TEST(Allocation, NoneInAStep) {
     const Body body = box(type, 3, 3, 3);
     const NodalValues x = awkward_states(body)[2].x, v = random_velocities(body.rest.size());
     NodalValues f = zeros(body.rest.size());
-    std::vector<double> diagonal(9 * body.rest.size()), stretch(static_cast<std::size_t>(body.cells())),
-        dense(24 * 24);
+    std::vector<double> normal(3 * body.rest.size()),
+        shear = normal, stretch(static_cast<std::size_t>(body.cells())), dense(24 * 24);
     for (const Material& material : all_materials()) {
       for (const Damping& damping : {rotated_damping, objective_damping}) {
         const long before_making = allocations;
@@ -47,7 +47,7 @@ TEST(Allocation, NoneInAStep) {
         block->update(x.data(), f.data(), block->interior());
         block->update(x.data(), f.data(), block->boundary());
         block->add_damping(v.data(), f.data(), 1, block->interior());
-        block->add_damping_diagonal(diagonal.data(), 1);
+        block->add_damping_diagonal(normal.data(), shear.data(), 1);
         block->damping_matrix(0, std::span(dense).first(9 * body.nodes_per_cell() * body.nodes_per_cell()));
         block->min_stretch(x.data(), stretch);
         const double sum = block->energy(x.data()) + block->stable_step(x.data()).damped +

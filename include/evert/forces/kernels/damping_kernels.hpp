@@ -131,46 +131,75 @@ void add_damping(const BlockArrays& block, const Damping& coefficients, double f
   });
 }
 
-/// V (β (h hᵀ + |g|² A Aᵀ) + α h hᵀ), h = A g: the diagonal block of the node with gradient g.
+/// A symmetric matrix in Voigt's order: xx yy zz, yz xz xy.
 template <Real T>
-EVERT_ALWAYS_INLINE Mat3<T> damping_block(const Vec3<T>& h, const T& gradient_squared,
-                                          const Mat3<T>& frame_square, const T& alpha, const T& beta) {
-  return outer((alpha + beta) * h, h) + (beta * gradient_squared) * frame_square;
+struct SymmetricBlock {
+  Vec3<T> normal{T(0.0), T(0.0), T(0.0)};
+  Vec3<T> shear{T(0.0), T(0.0), T(0.0)};
+
+  /// += c h hᵀ
+  EVERT_ALWAYS_INLINE void add_square(const T& c, const Vec3<T>& h) {
+    const Vec3<T> ch = c * h;
+    normal += Vec3<T>{ch[0] * h[0], ch[1] * h[1], ch[2] * h[2]};
+    shear += Vec3<T>{ch[1] * h[2], ch[0] * h[2], ch[0] * h[1]};
+  }
+};
+
+/// Adds the diagonal block of the node with gradient g at a point, V (β (h hᵀ + |g|² A Aᵀ) + α h hᵀ), h = A
+/// g. `alpha` and `beta` contain V.
+template <Real T>
+EVERT_ALWAYS_INLINE void add_damping_block(const Vec3<T>& g, const Mat3<T>& frame, const T& alpha,
+                                           const T& beta, SymmetricBlock<T>& block) {
+  block.add_square(alpha + beta, frame * g);
+  const T weight = beta * dot(g, g);
+  for (std::size_t j = 0; j < 3; ++j) block.add_square(weight, frame.column[j]);
+}
+
+/// The same where the frame is a rotation and in the gradient h already: A Aᵀ is the identity.
+template <Real T>
+EVERT_ALWAYS_INLINE void add_rotated_block(const Vec3<T>& h, const T& alpha, const T& beta,
+                                           SymmetricBlock<T>& block) {
+  block.add_square(alpha + beta, h);
+  const T weight = beta * dot(h, h);
+  block.normal += Vec3<T>{weight, weight, weight};
 }
 
 /// See ElasticBlock::add_damping_diagonal.
 template <Real T, const auto& element, DampingModel damping>
 void add_damping_diagonal(const BlockArrays& block, const Damping& coefficients, double factor,
-                          double* blocks, BatchRange batches) {
+                          double* normal, double* shear, BatchRange batches) {
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const CellBatch<T, element> batch(block, b);
     const DampingState<T, element, damping> state(block, b);
     const auto shape = damping_shape<T, element, damping>(block, b);
-    std::array<Mat3<T>, element.nodes> diagonal{};
+    std::array<SymmetricBlock<T>, element.nodes> diagonal{};
     for (std::size_t q = 0; q < batch.points; ++q) {
-      T weight = T(factor);
-      Mat3<T> frame = identity<T>();
-      if constexpr (!keeps_rotated_gradients<element, damping>) {
-        weight *= batch.volume(q);
-        frame = state.frame(q);
-      }
-      const Mat3<T> frame_square = times_transpose(frame, frame);
-      const T alpha = weight * T(coefficients.alpha), beta = weight * T(coefficients.beta);
-      Vec3<T> first{T(0.0), T(0.0), T(0.0)};
-      const auto add = [&](std::size_t a, const Vec3<T>& gradient) {
-        diagonal[a] += damping_block(frame * gradient, dot(gradient, gradient), frame_square, alpha, beta);
+      const auto for_each_gradient = [&](auto&& add) {
+        Vec3<T> first{T(0.0), T(0.0), T(0.0)};
+        for (std::size_t a = 1; a < element.nodes; ++a) {
+          const Vec3<T> gradient = shape.gradient(q, a);
+          first -= gradient;
+          add(gradient, diagonal[a]);
+        }
+        add(first, diagonal[0]);
       };
-      for (std::size_t a = 1; a < element.nodes; ++a) {
-        const Vec3<T> gradient = shape.gradient(q, a);
-        first -= gradient;
-        add(a, gradient);
+      const T alpha = T(factor * coefficients.alpha), beta = T(factor * coefficients.beta);
+      if constexpr (keeps_rotated_gradients<element, damping>) {
+        for_each_gradient([&](const Vec3<T>& h, SymmetricBlock<T>& of_node) {
+          add_rotated_block(h, alpha, beta, of_node);
+        });
+      } else {
+        const Mat3<T> frame = state.frame(q);
+        const T volume = batch.volume(q);
+        for_each_gradient([&](const Vec3<T>& g, SymmetricBlock<T>& of_node) {
+          add_damping_block(g, frame, volume * alpha, volume * beta, of_node);
+        });
       }
-      add(0, first);
     }
     for (std::size_t a = 0; a < element.nodes; ++a) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        add_rows<T, 9>(blocks + 3 * j, batch.nodes + a * lanes_v<T>, rows_of_lanes<T>(diagonal[a].column[j]));
-      }
+      const auto* nodes = batch.nodes + a * lanes_v<T>;
+      add_rows<T>(normal, nodes, rows_of_lanes<T>(diagonal[a].normal));
+      add_rows<T>(shear, nodes, rows_of_lanes<T>(diagonal[a].shear));
     }
   }
 }

@@ -20,8 +20,8 @@ struct ElasticKernels {
   void (*update)(const BlockArrays&, const Material&, const double* x, double* f, BatchRange) = nullptr;
   void (*add_damping)(const BlockArrays&, const Damping&, double factor, const double* v, double* out,
                       BatchRange) = nullptr;  ///< null without damping, as the next one
-  void (*add_damping_diagonal)(const BlockArrays&, const Damping&, double factor, double* blocks,
-                               BatchRange) = nullptr;
+  void (*add_damping_diagonal)(const BlockArrays&, const Damping&, double factor, double* normal,
+                               double* shear, BatchRange) = nullptr;
   double (*energy)(const BlockArrays&, const Material&, const double* x, BatchRange) = nullptr;
   void (*min_stretch)(const BlockArrays&, const double* x, double* per_cell, BatchRange) = nullptr;
   LocalIndex (*inverted_points)(const BlockArrays&, const double* x, BatchRange) = nullptr;

@@ -39,12 +39,11 @@ EVERT_ALWAYS_INLINE void add_row(double* to, const Vec3d& row) {
   to[2] += row[2];
 }
 
-/// Adds a row per lane to the node of that lane, one lane after the other: lanes may share a node. `stride`
-/// numbers lie between nodes.
-template <class T, int stride = 3>
+/// Adds a row per lane to the node of that lane, one lane after the other: lanes may share a node.
+template <class T>
 EVERT_ALWAYS_INLINE void add_rows(double* values, const LocalIndex* nodes, const NodeRows<T>& rows) {
   for (std::size_t l = 0; l < lanes_v<T>; ++l) {
-    add_row(values + stride * static_cast<std::ptrdiff_t>(nodes[l]), rows[l]);
+    add_row(values + 3 * static_cast<std::ptrdiff_t>(nodes[l]), rows[l]);
   }
 }
 
