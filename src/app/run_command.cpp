@@ -91,7 +91,7 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
 
 void restore(Simulation& simulation, const std::string& path, const std::string& fingerprint) {
   const auto state = read_checkpoint(simulation.mesh(), path, fingerprint);
-  simulation.restore(state.positions, state.velocities, state.scalars);
+  simulation.restore(state.nodes(), state.scalars);
 }
 
 GlobalIndex quadrature_points_of(const DistributedMesh& mesh) {

@@ -66,7 +66,7 @@ void DampingSolver::create_ksp() {
   check(KSPSetOperators(ksp_.get(), mat, mat));
   check(KSPGetTolerances(ksp_.get(), &rtol_, &atol_, nullptr, nullptr));
   check(KSPSetResidualHistory(ksp_.get(), nullptr, 1, PETSC_TRUE));  // the first norm, for refine()
-  check(VecDuplicate(reaction_.get(), last_.out()));
+  check(VecDuplicate(reaction_.get(), direction_.out()));
   check(VecDuplicate(reaction_.get(), image_.out()));
 }
 
@@ -83,7 +83,7 @@ void DampingSolver::add_damping(Vec v, Vec out, double factor) const {
 }
 
 int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,
-                         DampingStart start) {
+                         Vec along) {
   const PhaseScope scope(Phase::damping_solve);
   factor_ = s;
   impose(constraints, v.owned());
@@ -92,14 +92,14 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
   check(VecScale(reaction_.get(), -1.0));
   react(v.vec());
   reference_ = 0;
-  return correct(v, constraints, start);
+  return correct(v, constraints, along);
 }
 
 int DampingSolver::refine(NodeField& v, std::span<const NodeConstraint> constraints) {
   const PhaseScope scope(Phase::damping_solve);
   static_cast<void>(reaction());
   if (impose_now(v, constraints)) react(correction_.get());
-  return correct(v, constraints, DampingStart::unknown);
+  return correct(v, constraints, nullptr);
 }
 
 std::span<double> DampingSolver::reaction() {
@@ -141,7 +141,7 @@ bool DampingSolver::impose_now(NodeField& v, std::span<const NodeConstraint> con
 }
 
 /// Takes −P reaction_ off by changing `v` in the free directions.
-int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constraints, DampingStart start) {
+int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constraints, Vec along) {
   check(VecCopy(reaction_.get(), projected_.get()));
   check(VecScale(projected_.get(), -1.0));
   {
@@ -152,9 +152,9 @@ int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constra
   if (operator_ != nullptr) {
     operator_->set(factor_, constraints);
     if (assembled_ != nullptr) assembled_->assemble();
-    const double along = start == DampingStart::along_last ? go_along_last() : 0.0;
+    const double multiple = along != nullptr ? go_along(along) : 0.0;
     iterations = iterate();
-    if (along != 0) check(VecAXPY(correction_.get(), along, last_.get()));
+    if (multiple != 0) check(VecAXPY(correction_.get(), multiple, direction_.get()));
   } else {
     const VecView right(projected_.get());
     const VecView change(correction_.get());
@@ -169,25 +169,25 @@ int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constra
   return iterations;
 }
 
-/// Takes what the last correction d explains off the projected residual r: a d with a = d·r / d·A d, the best
-/// multiple in the norm of A. Returns a. The tolerance stays relative to all of r.
-double DampingSolver::go_along_last() {
+/// Takes off the projected residual r what a multiple of d, the free part of `direction`, does to it: a A d
+/// with a = d·r / d·A d, the best in the norm of A. Returns a. The tolerance stays relative to all of r.
+double DampingSolver::go_along(Vec direction) {
   reference_ = norm_of(projected_.get());
-  std::swap(last_, correction_);
+  check(VecCopy(direction, direction_.get()));
   {
-    const VecView last(last_.get());
-    project(operator_->constraints(), last.values());
+    const VecView free(direction_.get());
+    project(operator_->constraints(), free.values());
   }
   Mat mat = nullptr;
   check(KSPGetOperators(ksp_.get(), &mat, nullptr));
-  check(MatMult(mat, last_.get(), image_.get()));
+  check(MatMult(mat, direction_.get(), image_.get()));
   std::array<PetscScalar, 2> products{};
   const std::array<Vec, 2> vectors{projected_.get(), image_.get()};
-  check(VecMDot(last_.get(), 2, vectors.data(), products.data()));
+  check(VecMDot(direction_.get(), 2, vectors.data(), products.data()));
   if (!(products[1] > 0)) return 0;
-  const double along = products[0] / products[1];
-  check(VecAXPY(projected_.get(), -along, image_.get()));
-  return along;
+  const double multiple = products[0] / products[1];
+  check(VecAXPY(projected_.get(), -multiple, image_.get()));
+  return multiple;
 }
 
 /// As the KSP measures a residual.

@@ -41,6 +41,7 @@ StepReport Newmark::advance(System& system, double dt) {
   const auto held = collide(system, dt);
   report.cg_iterations += correct(system, dt, held.colliding);
   if (held.colliding || held.prescribed) report.cg_iterations += rub(system);
+  remember_change(system, system.v.owned(), predicted_.owned());
   report.contacts = system.collisions.contacts();
   system.time += dt;
   return report;
@@ -55,14 +56,22 @@ int Newmark::predict(System& system, double dt) {
   std::copy(v.begin(), v.end(), predicted_.owned().begin());
   predicted_.touched();
   follow_forces(system);
-  const int iterations =
-      solver_.solve(dt / 2, right_.get(), predicted_, system.prescribed.at(system.time + dt / 2));
+  const int iterations = solver_.solve(dt / 2, right_.get(), predicted_,
+                                       system.prescribed.at(system.time + dt / 2), system.v_change.vec());
+  remember_change(system, predicted_.owned(), v);
   const PhaseScope scope(Phase::vector_update, 2.0 * static_cast<double>(v.size()));
   auto x = system.x.owned();
   const auto predicted = predicted_.owned();
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += dt * predicted[i];
   system.x.touched();
   return iterations;
+}
+
+/// v_change = after − before: accelerations hardly change from one half of a step to the next.
+void Newmark::remember_change(System& system, std::span<const double> after,
+                              std::span<const double> before) const {
+  if (!solver_.damped()) return;
+  set_vec(system.v_change.vec(), [&](std::size_t i, double) { return after[i] - before[i]; });
 }
 
 /// 3. collisions turn x̃ into xⁿ⁺¹ and vⁿ into ṽⁿ. Returns what holds nodes of any rank now.
@@ -98,7 +107,7 @@ int Newmark::correct(System& system, double dt, bool colliding) {
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
   follow_forces(system);
-  return solver_.solve(implicit_, right_.get(), system.v, constraints_, DampingStart::along_last);
+  return solver_.solve(implicit_, right_.get(), system.v, constraints_, system.v_change.vec());
 }
 
 /// Collective.

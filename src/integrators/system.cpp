@@ -11,6 +11,7 @@ System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces
       gravity(gravitation),
       x(distributed),
       v(distributed),
+      v_change(distributed),
       f(distributed) {
   const auto rest = std::span(distributed.rest_positions);
   for (std::size_t node = 0; node < rest.size(); ++node)

@@ -16,7 +16,7 @@ namespace evert {
 namespace {
 
 const std::string format = "evert checkpoint";
-constexpr std::int64_t format_version = 1;
+constexpr std::int64_t format_version = 2;
 
 // Attributes hold signed integers.
 std::int64_t as_attribute(std::uint64_t digest) { return std::bit_cast<std::int64_t>(digest); }
@@ -58,8 +58,8 @@ void require_usable(const std::string& path, const std::string& fingerprint, Glo
     require_format(file);
     if (file.attribute<std::string>("/", "fingerprint") != fingerprint)
       throw UserError("checkpoint '" + path + "' belongs to another scene");
-    if (file.shape_of("/positions") != TableShape{nodes, 3} ||
-        file.shape_of("/velocities") != TableShape{nodes, 3} ||
+    const auto fits = [&](const std::string& table) { return file.shape_of(table) == TableShape{nodes, 3}; };
+    if (!fits("/positions") || !fits("/velocities") || !fits("/velocity_changes") ||
         file.attribute<std::int64_t>("/", "mesh_digest") != as_attribute(mesh_digest))
       throw UserError("checkpoint '" + path + "' belongs to another mesh");
   } catch (const Hdf5Error& error) {
@@ -88,13 +88,12 @@ CheckpointWriter::CheckpointWriter(const DistributedMesh& mesh, std::string path
   on_root(mesh.comm, [&] { require_writable(path_); });
 }
 
-void CheckpointWriter::write(std::span<const double> positions, std::span<const double> velocities,
-                             std::span<const StateScalar> scalars) const {
+void CheckpointWriter::write(const NodeState& nodes, std::span<const StateScalar> scalars) const {
   const PhaseScope phase(Phase::io);
   const std::string temporary = path_ + ".tmp";
   try {
     on_root(mesh_.comm, [&] { require_writable(temporary); });
-    write_file(temporary, positions, velocities, scalars);
+    write_file(temporary, nodes, scalars);
     on_every_rank(mesh_.comm, [&] { sync_file(temporary); });
     on_root(mesh_.comm, [&] { replace_file(temporary, path_); });
   } catch (const UserError&) {
@@ -103,13 +102,12 @@ void CheckpointWriter::write(std::span<const double> positions, std::span<const 
   }
 }
 
-void CheckpointWriter::write_file(const std::string& path, std::span<const double> positions,
-                                  std::span<const double> velocities,
+void CheckpointWriter::write_file(const std::string& path, const NodeState& nodes,
                                   std::span<const StateScalar> scalars) const {
   auto file = Hdf5File::create(mesh_.comm, path);
   std::vector<std::string> names;
   std::vector<double> values;
-  auto bytes = mesh_.total_nodes * 48 + metadata_allowance + static_cast<std::int64_t>(fingerprint_.size());
+  auto bytes = mesh_.total_nodes * 72 + metadata_allowance + static_cast<std::int64_t>(fingerprint_.size());
   for (const auto& [name, value] : scalars) {
     names.push_back(name);
     values.push_back(value);
@@ -127,8 +125,9 @@ void CheckpointWriter::write_file(const std::string& path, std::span<const doubl
     file.write<double>(table, {order_.total(), 3}, rows_of(order_), slice);
     file.set_attribute(table, "digest", as_attribute(digest(mesh_.comm, 3 * order_.first(), slice)));
   };
-  write_table("/positions", positions);
-  write_table("/velocities", velocities);
+  write_table("/positions", nodes.positions);
+  write_table("/velocities", nodes.velocities);
+  write_table("/velocity_changes", nodes.velocity_changes);
   file.close();
 }
 
@@ -146,7 +145,8 @@ CheckpointState read_checkpoint(const DistributedMesh& mesh, const std::string& 
       throw UserError("checkpoint '" + path + "' is damaged: the values of '" + table + "' have changed");
     return order.to_owners<double>(slice, 3);
   };
-  return {read_table("/positions"), read_table("/velocities"), read_scalars(file)};
+  return {read_table("/positions"), read_table("/velocities"), read_table("/velocity_changes"),
+          read_scalars(file)};
 }
 
 }  // namespace evert

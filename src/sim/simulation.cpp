@@ -218,6 +218,10 @@ void Simulation::set_friction(const std::string& obstacle, double coefficient) {
   found->set_friction(coefficient);
 }
 
+NodeState Simulation::node_state() const {
+  return {system_.x.owned(), system_.v.owned(), system_.v_change.owned()};
+}
+
 std::vector<StateScalar> Simulation::state_scalars() const {
   const auto control = time_step_.state();
   std::vector<StateScalar> scalars{{"time", system_.time},
@@ -233,8 +237,7 @@ std::vector<StateScalar> Simulation::state_scalars() const {
   return scalars;
 }
 
-void Simulation::restore(std::span<const double> positions, std::span<const double> velocities,
-                         std::span<const StateScalar> scalars) {
+void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> scalars) {
   const auto value = [&](const std::string& name) {
     for (const auto& [key, number] : scalars)
       if (key == name) return number;
@@ -248,10 +251,13 @@ void Simulation::restore(std::span<const double> positions, std::span<const doub
   const auto events_done = static_cast<std::size_t>(value("events_done"));
   steps_ = static_cast<std::int64_t>(value("steps"));
   system_.time = value("time");
-  std::copy(positions.begin(), positions.end(), system_.x.owned().begin());
-  std::copy(velocities.begin(), velocities.end(), system_.v.owned().begin());
-  system_.x.touched();
-  system_.v.touched();
+  const auto replace = [](NodeField& field, std::span<const double> values) {
+    std::copy(values.begin(), values.end(), field.owned().begin());
+    field.touched();
+  };
+  replace(system_.x, nodes.positions);
+  replace(system_.v, nodes.velocities);
+  replace(system_.v_change, nodes.velocity_changes);
   impulses_before_ = as_impulses(impulses);
   system_.impulses = {};
   forces_stale_ = true;

@@ -49,13 +49,14 @@ TEST(RanksAgree, ARestoredRunIsBitwiseEqual) {
   auto whole = test::build(falling_ball);
   after_steps(*whole.simulation, 37);
   const auto& running = *whole.simulation;
-  const std::vector<double> x(running.positions().owned().begin(), running.positions().owned().end());
-  const std::vector<double> v(running.velocities().owned().begin(), running.velocities().owned().end());
+  const auto [x, v, changes] = running.node_state();
+  const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
+      kept_changes(changes.begin(), changes.end());
   const auto scalars = running.state_scalars();
   const auto uninterrupted = after_steps(*whole.simulation, 100);
 
   auto restarted = test::build(falling_ball);
-  restarted.simulation->restore(x, v, scalars);
+  restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
   EXPECT_EQ(restarted.simulation->steps(), 37);
   EXPECT_EQ(after_steps(*restarted.simulation, 100), uninterrupted);
 }

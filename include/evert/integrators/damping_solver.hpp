@@ -7,12 +7,6 @@
 
 namespace evert {
 
-/// What a solve may know beforehand of the change of velocity that it looks for.
-enum class DampingStart {
-  unknown,     ///< nothing
-  along_last,  ///< it resembles that of the last solve, up to its size
-};
-
 /// Solves (M + s C) v = b for the velocities of the unconstrained directions, by PETSc's conjugate gradients
 /// with option prefix `damping_`.  PHYSICS 5
 ///
@@ -32,9 +26,9 @@ class DampingSolver {
   void invalidate();
 
   /// Collective. On entry `v` is the velocity before; on return v = P v + prescribed with P (M + s C) v = P
-  /// b. Returns the number of iterations. Throws SimulationError when PETSc reports divergence.
-  int solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,
-            DampingStart start = DampingStart::unknown);
+  /// b. `along`: what the change of velocity is expected to resemble, up to its size; nullptr where nothing
+  /// is known. Returns the number of iterations. Throws SimulationError when PETSc reports divergence.
+  int solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints, Vec along = nullptr);
 
   /// Collective. What the constraints exerted in the last solve, (M + s C) v − b per owned node [N s]; beside
   /// the constrained directions it is what the tolerance has left. Take an impulse off it to add that to b,
@@ -53,8 +47,8 @@ class DampingSolver {
 
  private:
   void create_ksp();
-  int correct(NodeField& v, std::span<const NodeConstraint> constraints, DampingStart start);
-  double go_along_last();
+  int correct(NodeField& v, std::span<const NodeConstraint> constraints, Vec along);
+  double go_along(Vec direction);
   [[nodiscard]] double norm_of(Vec residual);
   int iterate();
   bool impose_now(NodeField& v, std::span<const NodeConstraint> constraints);
@@ -66,9 +60,9 @@ class DampingSolver {
   std::unique_ptr<AssembledDamping> assembled_;  // with -damping_mat_type other than shell
   KspHandle ksp_;
   VecHandle reaction_, projected_, correction_;
-  VecHandle last_, image_;  // the last correction, and scratch; only where something is damped
-  bool reacted_ = true;     // reaction_ knows of correction_
-  double factor_ = 0;       // s of the last solve
+  VecHandle direction_, image_;  // of go_along() and its product, only where something is damped
+  bool reacted_ = true;          // reaction_ knows of correction_
+  double factor_ = 0;            // s of the last solve
   double rtol_ = 0, atol_ = 0;
   double reference_ = 0;  // the norm that rtol_ is relative to; 0 for that of the starting residual
 };

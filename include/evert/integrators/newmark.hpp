@@ -39,6 +39,7 @@ class Newmark {
   Held collide(System& system, double dt);
   int correct(System& system, double dt, bool colliding);
   int rub(System& system);
+  void remember_change(System& system, std::span<const double> after, std::span<const double> before) const;
   void follow_forces(const System& system);
 
   DampingSolver solver_;

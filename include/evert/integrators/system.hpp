@@ -17,10 +17,11 @@ struct System {
   PrescribedMotion& prescribed;
   Vec3d gravity;  ///< [m/s^2]
 
-  NodeField x;      ///< positions [m]; ghosts are up to date between steps
-  NodeField v;      ///< velocities [m/s]
-  NodeField f;      ///< elastic forces and weight at x, owned nodes [N]
-  double time = 0;  ///< [s]
+  NodeField x;         ///< positions [m]; ghosts are up to date between steps
+  NodeField v;         ///< velocities [m/s]
+  NodeField v_change;  ///< what the last half step added to v: where the next solve looks first [m/s]
+  NodeField f;         ///< elastic forces and weight at x, owned nodes [N]
+  double time = 0;     ///< [s]
   std::uint64_t force_updates =
       0;  ///< counts update_forces(), so that what depends on C(x) knows when it is stale
 

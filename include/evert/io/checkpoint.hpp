@@ -12,9 +12,10 @@ namespace evert {
 
 /// What a checkpoint brings back, in this rank's order.
 struct CheckpointState {
-  std::vector<double> positions;   ///< [m] 3 per owned node
-  std::vector<double> velocities;  ///< [m/s] 3 per owned node
+  std::vector<double> positions, velocities, velocity_changes;  ///< see NodeState
   std::vector<StateScalar> scalars;
+
+  [[nodiscard]] NodeState nodes() const { return {positions, velocities, velocity_changes}; }
 };
 
 /// Writes checkpoints of one run to one file. A new one is completed under a temporary name, brought to the
@@ -25,13 +26,12 @@ class CheckpointWriter {
   /// `fingerprint` tells this scene from others. `mesh` must outlive the writer.
   CheckpointWriter(const DistributedMesh& mesh, std::string path, std::string fingerprint);
 
-  /// Owned values, 3 per node, and scalars that are the same on all ranks.
-  void write(std::span<const double> positions, std::span<const double> velocities,
-             std::span<const StateScalar> scalars) const;
+  /// The scalars are the same on all ranks.
+  void write(const NodeState& nodes, std::span<const StateScalar> scalars) const;
 
  private:
-  void write_file(const std::string& path, std::span<const double> positions,
-                  std::span<const double> velocities, std::span<const StateScalar> scalars) const;
+  void write_file(const std::string& path, const NodeState& nodes,
+                  std::span<const StateScalar> scalars) const;
 
   const DistributedMesh& mesh_;
   std::string path_;

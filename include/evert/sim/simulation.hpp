@@ -26,7 +26,15 @@ struct Measurements {
   GlobalIndex inverted_points = 0;  ///< quadrature points with det F < 0; a tet4 has one
 };
 
-/// A value that a checkpoint keeps besides positions and velocities; restored bit by bit.
+/// The nodal values that a checkpoint keeps, 3 per owned node. They are views: of the simulation that gave
+/// them, or of whatever else holds them.
+struct NodeState {
+  std::span<const double> positions;         ///< [m]
+  std::span<const double> velocities;        ///< [m/s]
+  std::span<const double> velocity_changes;  ///< System::v_change [m/s]
+};
+
+/// A value that a checkpoint keeps besides those; restored bit by bit.
 using StateScalar = std::pair<std::string, double>;
 
 /// Owns everything that moves; one call advances it. All calls are collective unless said otherwise.
@@ -75,13 +83,12 @@ class Simulation {
   /// `obstacle` must exist.
   void set_friction(const std::string& obstacle, double coefficient);
 
-  /// All state besides positions and velocities (time, steps, step control, impulses). Impulses are summed
-  /// over ranks.
+  [[nodiscard]] NodeState node_state() const;
+  /// All other state (time, steps, step control, impulses). Impulses are summed over ranks.
   [[nodiscard]] std::vector<StateScalar> state_scalars() const;
-  /// Replaces the whole state: owned positions and velocities (3 per owned node) and the scalars of
-  /// state_scalars(). Events up to the restored time are applied. Throws UserError when a scalar is missing.
-  void restore(std::span<const double> positions, std::span<const double> velocities,
-               std::span<const StateScalar> scalars);
+  /// Replaces the whole state, by what node_state() and state_scalars() gave. Events up to the restored time
+  /// are applied. Throws UserError when a scalar is missing.
+  void restore(const NodeState& nodes, std::span<const StateScalar> scalars);
 
  private:
   void apply_due_events();

@@ -43,7 +43,10 @@ std::string error_of_state(Simulation& simulation, bool position, double value) 
   std::vector<double> positions(x.begin(), x.end());
   std::vector<double> velocities(v.begin(), v.end());
   if (on_last_rank()) (position ? positions : velocities).back() = value;
-  return simulation_error_of([&] { simulation.restore(positions, velocities, simulation.state_scalars()); });
+  return simulation_error_of([&] {
+    simulation.restore({positions, velocities, simulation.node_state().velocity_changes},
+                       simulation.state_scalars());
+  });
 }
 
 TEST(Simulation, AllRanksLearnOfOneNodeThatIsNotFinite) {
