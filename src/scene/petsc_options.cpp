@@ -36,6 +36,8 @@ const std::vector<std::string> valued_options{"mat_type",
 /// And those that may stand alone.
 const std::vector<std::string> flag_options{"ksp_monitor", "ksp_view", "ksp_converged_reason",
                                             "ksp_initial_guess_nonzero"};
+/// PETSc reads these in each solve, not in the set-up.
+const std::vector<std::string> late_options{"ksp_converged_reason", "ksp_test_null_space"};
 
 /// Options worth a suggestion: those of the solves we make, and the ones of PETSc that users type.
 std::vector<std::string> well_known_options() {
@@ -59,6 +61,10 @@ void require_value(const std::string& name, bool has_value, const std::string& s
   if (has_value || !name.starts_with(solver_prefix)) return;
   if (contains(valued_options, name.substr(solver_prefix.size())))
     throw UserError(shown + ": needs a value, but has none");
+}
+
+bool is_read_later(std::string_view name, bool damped) {
+  return damped && name.starts_with(solver_prefix) && contains(late_options, name.substr(solver_prefix.size()));
 }
 
 /// Options that were put into the database but never read, sorted so that every rank names the same one.
@@ -114,7 +120,8 @@ void reject_unused_options(MPI_Comm comm, bool allow_unknown, bool damped) {
   if (allow_unknown) return;
   std::string message;
   for (const auto& name : unused_options())
-    if (message.empty() && !contains(process_options(), name)) message = complaint(name, damped);
+    if (message.empty() && !contains(process_options(), name) && !is_read_later(name, damped))
+      message = complaint(name, damped);
   agree_or_throw(comm, message);
 }
 

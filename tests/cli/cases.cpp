@@ -47,6 +47,11 @@ const Edit halfway_event{"petsc:", "events: [{at: 5e-4, set: gravity, to: [0, 0,
 
 const std::vector<Case> good_runs{
     {.name = "good_scene", .files = {scene()}, .exit_code = 0},
+    {.name = "good_option_of_the_solve",
+     .command = "run scene.yaml -damping_ksp_converged_reason",
+     .files = {scene()},
+     .exit_code = 0,
+     .says = {"Linear damping_ solve converged"}},
     {.name = "good_gmsh2", .files = {scene_with_mesh("cube.msh"), gmsh2()}, .exit_code = 0},
     {.name = "good_gmsh4", .files = {scene_with_mesh("cube.msh"), gmsh4()}, .exit_code = 0},
     {.name = "good_medit", .files = {scene_with_mesh("cube.mesh"), medit()}, .exit_code = 0},
