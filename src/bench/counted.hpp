@@ -14,7 +14,6 @@ struct OperationLog {
   double divisions = 0;  ///< and square roots
   std::unordered_set<const double*> read;
   std::unordered_set<const double*> written;
-  std::unordered_set<const float*> floats_read;
 };
 
 /// A double in the place of a pack of one lane. Additions, subtractions, multiplications, divisions and
@@ -39,9 +38,7 @@ class Counted {
       so_far().read.insert(from);
     }
     template <class Alignment>
-    Lane(const float* from, Alignment /*tag*/) : value_(*from) {
-      so_far().floats_read.insert(from);
-    }
+    Lane(const float* from, Alignment /*tag*/) : value_(*from) {}  // of measures, which are not counted
     template <class Alignment>
     void copy_to(double* to, Alignment /*tag*/) const {
       so_far().written.insert(to);

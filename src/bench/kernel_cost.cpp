@@ -5,6 +5,7 @@
 #include "evert/math/svd3.hpp"
 
 #include "counted.hpp"
+#include "general_path.hpp"
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -42,20 +43,20 @@ std::vector<Vec3d> unit_cell(CellType type) {
 }
 
 /// One cell, deformed by nothing in particular: the kernels have no branches.
-template <const auto& element, DampingModel damping>
+template <const auto& element>
 struct CountedCell {
   std::vector<double> x;
   std::vector<double> f = std::vector<double>(3 * element.nodes + 1);
   std::unique_ptr<ElasticBlock> block;
 
-  CountedCell() {
+  CountedCell(DampingModel damping, const kernels::ElasticKernels& kernels) {
     std::vector<LocalIndex> nodes(element.nodes);
     std::iota(nodes.begin(), nodes.end(), 0);
     const auto rest = unit_cell(element.type);
     for (const Vec3d& p : rest) x.insert(x.end(), {1.1 * p[0] + 0.3 * p[1], p[1], 0.9 * p[2]});
     x.push_back(0);  // the double of slack that kernels may read
     block = make_elastic_block({element.type, nodes, 1, 1}, rest, NeoHookean{.lame = {1, 1}}, {damping, 1, 1},
-                               kernels::kernels_of<Counted, element, NeoHookean, damping>());
+                               kernels);
   }
 
   void update() { block->update(x.data(), f.data(), block->interior()); }
@@ -71,26 +72,29 @@ struct CountedCell {
   }
 };
 
-template <const auto& element, DampingModel damping>
-KernelCost force_cost_of() {
-  CountedCell<element, damping> cell;
-  return cell.per_point(cost_of([&] { cell.update(); }));
+template <const auto& element>
+CountedCell<element> cell_of_library(DampingModel damping) {
+  return {damping, kernels::kernels_of<Counted, element, NeoHookean>(damping)};
 }
 
 template <const auto& element>
-KernelCost force_cost_of(DampingModel damping) {
-  return damping == DampingModel::rotated ? force_cost_of<element, DampingModel::rotated>()
-                                          : force_cost_of<element, DampingModel::none>();
+KernelCost force_cost_of(CountedCell<element> cell) {
+  return cell.per_point(cost_of([&] { cell.update(); }));
 }
 
 }  // namespace
 
 KernelCost force_cost(CellType type, DampingModel damping) {
-  return type == CellType::tet4 ? force_cost_of<tet4>(damping) : force_cost_of<hex8>(damping);
+  return type == CellType::tet4 ? force_cost_of(cell_of_library<tet4>(damping))
+                                : force_cost_of(cell_of_library<hex8>(damping));
+}
+
+KernelCost general_path_cost() {
+  return force_cost_of(CountedCell<hex8_by_gradients>(DampingModel::none, general_hex_kernels<Counted>()));
 }
 
 KernelCost damping_cost() {
-  CountedCell<tet4, DampingModel::rotated> cell;
+  auto cell = cell_of_library<tet4>(DampingModel::rotated);
   cell.update();
   return cell.per_point(
       cost_of([&] { cell.block->add_damping(cell.x.data(), cell.f.data(), 1, cell.block->interior()); }));

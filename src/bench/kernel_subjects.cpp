@@ -95,7 +95,19 @@ void TetSubject::svd_part() {
 HexSubject::HexSubject(MPI_Comm comm, int divisions)
     : specimen_(comm, CellType::hex8, divisions),
       result_(specimen_.mesh),
-      plain_(elastic(specimen_, DampingModel::none)) {}
+      plain_(elastic(specimen_, DampingModel::none)) {
+  const auto& cells = specimen_.mesh.cells.front();
+  general_ =
+      make_elastic_block({cells.type, cells.nodes, cells.interior, density}, specimen_.mesh.rest_positions,
+                         material, Damping{}, level_kernels().general_hex);
+}
+
+void HexSubject::general_force() {
+  std::ranges::fill(result_.local(), 0.0);
+  const double* x = specimen_.positions.local().data();
+  general_->update(x, result_.local().data(), general_->interior());
+  general_->update(x, result_.local().data(), general_->boundary());
+}
 
 CeilingSubject::CeilingSubject(std::size_t memory) {
   const std::size_t count = std::max<std::size_t>(1, memory / (3 * sizeof(double) * 8)) * 8;

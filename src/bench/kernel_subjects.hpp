@@ -8,6 +8,7 @@
 #include "evert/integrators/damping_matrix.hpp"
 #include "evert/math/svd3_batch.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace evert::bench {
@@ -89,11 +90,14 @@ class HexSubject {
     return static_cast<double>(specimen_.mesh.total_nodes) / points();
   }
   void force() { plain_.update(specimen_.positions, result_); }
+  /// By U and V, without sum factorisation; halo left out.
+  void general_force();
 
  private:
   Specimen specimen_;
   NodeField result_;
   ElasticForces plain_;
+  std::unique_ptr<ElasticBlock> general_;
 };
 
 /// What the machine can do.

@@ -1,5 +1,7 @@
 #include "evert/bench/level_kernels.hpp"
 
+#include "general_path.hpp"
+
 #define EVERT_NAME_OF(level) #level
 #define EVERT_STRING(level) EVERT_NAME_OF(level)
 
@@ -45,7 +47,7 @@ void triad(double* a, const double* b, const double* c, double factor, std::size
 
 LevelKernels kernels() {
   return {EVERT_STRING(EVERT_KERNEL_LEVEL), multiply_add, 2.0 * chains * lanes_v<Pack>, divide_and_root,
-          2.0 * chains * lanes_v<Pack>,     triad};
+          2.0 * chains * lanes_v<Pack>,     triad,        general_hex_kernels<Pack>()};
 }
 
 }  // namespace evert::bench::EVERT_KERNEL_LEVEL

@@ -37,9 +37,9 @@ TEST_P(Bench, WritesWhatItMeasures) {
   EXPECT_EQ(json["ranks"].as<int>(), GetParam());
   for (const char* key : {"date", "machine", "cpu_level"})
     EXPECT_FALSE(json[key].as<std::string>().empty()) << key;
-  for (const char* key : {"tet_force_mps", "tet_force_damped_mps", "hex_force_mqps", "svd_mps",
-                          "damping_mtps", "damping_matmult_mtps", "baij_matmult_mtps", "naive_tet_force_mps",
-                          "multiply_add_gflops", "division_gps", "triad_gbs"})
+  for (const char* key : {"tet_force_mps", "tet_force_damped_mps", "hex_force_mqps", "general_path_mqps",
+                          "svd_mps", "damping_mtps", "damping_matmult_mtps", "baij_matmult_mtps",
+                          "naive_tet_force_mps", "multiply_add_gflops", "division_gps", "triad_gbs"})
     expect_rate(json[key]["small"], key);
   for (const char* group : {"multiple_of_naive", "share_of_ceiling"})
     EXPECT_GT(json[group]["small"]["tet_force_mps"].as<double>(), 0) << group;

@@ -19,6 +19,8 @@ struct KernelCost {
 
 /// ElasticForces::update of neo-Hookean cells.
 [[nodiscard]] KernelCost force_cost(CellType type, DampingModel damping);
+/// The same of hexahedra on the path of models that need U and V.
+[[nodiscard]] KernelCost general_path_cost();
 /// ElasticForces::add_damping, `rotated`, tet4.
 [[nodiscard]] KernelCost damping_cost();
 /// U, σ and V from F in memory; the result stays in a cache.

@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/forces/kernels/elastic_kernels.hpp"
 #include "evert/math/pack.hpp"
 
 #include <cstddef>
@@ -18,6 +19,8 @@ struct LevelKernels {
   double divisions_per_step;  ///< and square roots
   /// a = b + factor · c for `count` numbers, a multiple of 8.
   void (*triad)(double* a, const double* b, const double* c, double factor, std::size_t count);
+  /// Forces of hex8 by U and V and by shape gradients, for a block of neo-Hookean cells.
+  evert::kernels::ElasticKernels general_hex;
 };
 
 /// Those of kernels::chosen_cpu_level(), and as that it throws UserError.

@@ -72,6 +72,13 @@ constexpr ReferenceElement<8, 8> make_hex8() {
 
 inline constexpr ReferenceElement<8, 8> hex8 = detail::make_hex8();
 
+/// hex8 by the gradients of its shape functions, as an element that is no tensor product: to compare the two.
+inline constexpr ReferenceElement<8, 8> hex8_by_gradients = [] {
+  ReferenceElement<8, 8> general = hex8;
+  general.tensor_product = false;
+  return general;
+}();
+
 /// A list of reference elements.
 template <const auto&... elements>
 struct ReferenceElements {};

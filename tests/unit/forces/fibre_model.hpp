@@ -40,19 +40,4 @@ struct FibreModel {
   }
 };
 
-/// An isotropic model that goes the long way.
-template <class Isotropic>
-struct InFrames {
-  Isotropic model;
-
-  template <class T>
-  EVERT_ALWAYS_INLINE T energy(const Svd3<T>& svd) const {
-    return model.energy(svd.sigma);
-  }
-  template <class T>
-  EVERT_ALWAYS_INLINE Mat3<T> stress_in_frames(const Svd3<T>& svd) const {
-    return diagonal(model.principal_stress(svd.sigma));
-  }
-};
-
 }  // namespace evert::test

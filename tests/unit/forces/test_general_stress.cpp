@@ -11,12 +11,6 @@
 namespace evert::test {
 namespace {
 
-inline constexpr ReferenceElement<8, 8> hex8_by_gradients = [] {
-  ReferenceElement<8, 8> general = hex8;
-  general.tensor_product = false;
-  return general;
-}();
-
 /// Kernels of any model on batches of T.
 template <class T, const auto& element>
 class Kernels {
@@ -48,6 +42,8 @@ class Kernels {
 };
 
 Body small_body(CellType type) { return type == CellType::tet4 ? box(type, 1, 2, 2) : box(type, 2, 1, 1); }
+
+using kernels::InFrames;
 
 const FibreModel muscle{NeoHookean{.lame = soft}, 2e4, Vec3d{0.6, 0, 0.8}};
 

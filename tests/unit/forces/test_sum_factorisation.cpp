@@ -11,12 +11,6 @@ namespace {
 
 using kernels::Cube;
 
-inline constexpr ReferenceElement<8, 8> hex8_by_gradients = [] {
-  ReferenceElement<8, 8> general = hex8;
-  general.tensor_product = false;
-  return general;
-}();
-
 Cube<double> random_cube(std::mt19937_64& random) {
   std::normal_distribution<double> normal(0, 1);
   Cube<double> values;

@@ -15,6 +15,21 @@ concept NeedsFrames = requires(const Model& model, const Svd3<double>& svd) {
   { model.energy(svd) } -> std::same_as<double>;
 };
 
+/// An isotropic model that goes the long way: to compare the two.
+template <class Isotropic>
+struct InFrames {
+  Isotropic model;
+
+  template <class T>
+  EVERT_ALWAYS_INLINE T energy(const Svd3<T>& svd) const {
+    return model.energy(svd.sigma);
+  }
+  template <class T>
+  EVERT_ALWAYS_INLINE Mat3<T> stress_in_frames(const Svd3<T>& svd) const {
+    return diagonal(model.principal_stress(svd.sigma));
+  }
+};
+
 /// What a run of such a model holds besides PointRun.
 template <Real T>
 struct FramedRun {
