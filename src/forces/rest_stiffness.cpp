@@ -115,9 +115,11 @@ std::vector<double> own_mass_shares(const ElementBlock& block, double density) {
                              if (block.cell_of_lane[slot] < 0) continue;
                              const auto cell = static_cast<std::size_t>(block.cell_of_lane[slot]);
                              const auto at = rest_points(element, block, slot);
-                             for (std::size_t q = 0; q < points; ++q)
-                               for (std::size_t a = 0; a < nodes; ++a)
-                                 shares[nodes * cell + a] += density * at[q].volume * element.values[q][a];
+                             std::array<double, points> volumes;
+                             for (std::size_t q = 0; q < points; ++q) volumes[q] = at[q].volume;
+                             const auto of_cell = lumped_volumes(element, volumes);
+                             for (std::size_t a = 0; a < nodes; ++a)
+                               shares[nodes * cell + a] = density * of_cell[a];
                            }
                          });
   return shares;

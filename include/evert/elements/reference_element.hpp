@@ -79,12 +79,91 @@ inline constexpr ReferenceElement<8, 8> hex8_by_gradients = [] {
   return general;
 }();
 
+namespace detail {
+
+/// Wedge: the triangle ξ, η ≥ 0, ξ + η ≤ 1 times −1 ≤ ζ ≤ 1; three points of the triangle times two Gauss
+/// points, which integrate quadratic functions exactly in both.
+constexpr ReferenceElement<6, 6> make_wedge6() {
+  constexpr double gauss = 0.57735026918962576451;  // 1/√3
+  constexpr std::array<std::array<double, 2>, 3> slopes{{{-1, -1}, {1, 0}, {0, 1}}};
+  ReferenceElement<6, 6> wedge{.type = CellType::wedge6, .weights = {}, .values = {}, .gradients = {}};
+  for (std::size_t q = 0; q < 6; ++q) {
+    const double zeta = q < 3 ? -gauss : gauss;
+    wedge.weights[q] = 1.0 / 6;
+    for (std::size_t a = 0; a < 6; ++a) {
+      const double side = a < 3 ? -1 : 1;
+      const double along = 0.5 * (1 + side * zeta);
+      const double in_triangle = a % 3 == q % 3 ? 2.0 / 3 : 1.0 / 6;
+      wedge.values[q][a] = in_triangle * along;
+      wedge.gradients[q][a] = {slopes[a % 3][0] * along, slopes[a % 3][1] * along, 0.5 * side * in_triangle};
+    }
+  }
+  return wedge;
+}
+
+/// Quadratic tetrahedron ξ, η, ζ ≥ 0, ξ + η + ζ ≤ 1: corners, then the middles of the edges 01 12 20 03
+/// 13 23. Four points at barycentric coordinates (5 + 3√5)/20 and (5 − √5)/20 integrate quadratic functions
+/// exactly.
+constexpr ReferenceElement<10, 4> make_tet10() {
+  constexpr double near = 0.58541019662496845446, far = 0.13819660112501051518;
+  constexpr std::array<Vec3d, 4> slopes{{{{-1, -1, -1}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
+  constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  ReferenceElement<10, 4> tet{.type = CellType::tet10, .weights = {}, .values = {}, .gradients = {}};
+  for (std::size_t q = 0; q < 4; ++q) {
+    tet.weights[q] = 1.0 / 24;
+    std::array<double, 4> barycentric{far, far, far, far};
+    barycentric[q] = near;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double l = barycentric[a];
+      tet.values[q][a] = l * (2 * l - 1);
+      tet.gradients[q][a] = (4 * l - 1) * slopes[a];
+    }
+    for (std::size_t e = 0; e < 6; ++e) {
+      const auto [i, j] = edges[e];
+      tet.values[q][4 + e] = 4 * barycentric[i] * barycentric[j];
+      tet.gradients[q][4 + e] = (4 * barycentric[i]) * slopes[j] + (4 * barycentric[j]) * slopes[i];
+    }
+  }
+  return tet;
+}
+
+}  // namespace detail
+
+inline constexpr ReferenceElement<6, 6> wedge6 = detail::make_wedge6();
+inline constexpr ReferenceElement<10, 4> tet10 = detail::make_tet10();
+
+/// Splits a cell over its nodes for lumped masses: what each gets of the `volumes` |∂X/∂ξ| W of the points.
+///
+/// Row sums of the consistent mass matrix, Σ_q N_a V_q, where every N_a is positive at the points. In tet10
+/// the corners would get −1/20 each. There its diagonal, Σ_q N_a² V_q, is scaled to the volume of the cell:
+/// positive for any shape, and it keeps the mass.  Hinton, Rock and Zienkiewicz 1976
+template <int nodes, int points, class Element = ReferenceElement<nodes, points>>
+constexpr auto lumped_volumes(const ReferenceElement<nodes, points>& element,
+                              const typename Element::template PerPoint<double>& volumes) {
+  typename Element::template PerNode<double> rows{}, diagonal{};
+  double volume = 0, trace = 0;
+  bool positive = true;
+  for (std::size_t q = 0; q < points; ++q) {
+    volume += volumes[q];
+    for (std::size_t a = 0; a < nodes; ++a) {
+      const double value = element.values[q][a];
+      positive = positive && value > 0;
+      rows[a] += value * volumes[q];
+      diagonal[a] += value * value * volumes[q];
+      trace += value * value * volumes[q];
+    }
+  }
+  if (positive) return rows;
+  for (double& share : diagonal) share *= volume / trace;
+  return diagonal;
+}
+
 /// A list of reference elements.
 template <const auto&... elements>
 struct ReferenceElements {};
 
 /// Every cell type that carries elements.
-using AllReferenceElements = ReferenceElements<tet4, hex8>;
+using AllReferenceElements = ReferenceElements<tet4, hex8, wedge6, tet10>;
 
 namespace detail {
 

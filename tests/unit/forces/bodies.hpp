@@ -4,11 +4,13 @@
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/cpu_level.hpp"
 #include "evert/forces/kernels/kernel_table.hpp"
+#include "evert/mesh/partition.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <random>
 #include <span>
@@ -39,7 +41,7 @@ struct Body {
   std::vector<Vec3d> rest;
   std::vector<LocalIndex> nodes;
 
-  [[nodiscard]] std::size_t nodes_per_cell() const { return type == CellType::tet4 ? 4 : 8; }
+  [[nodiscard]] std::size_t nodes_per_cell() const { return static_cast<std::size_t>(node_count(type)); }
   [[nodiscard]] LocalIndex cells() const { return static_cast<LocalIndex>(nodes.size() / nodes_per_cell()); }
   [[nodiscard]] ElasticCells elastic_cells(LocalIndex interior = 0) const {
     return {type, nodes, interior, 1000};
@@ -49,9 +51,35 @@ struct Body {
   }
 };
 
-/// nx × ny × nz cubes of the given edge, each one hexahedron or six tetrahedra; nodes shaken by `shake`
-/// edges.
+inline constexpr std::array all_elements = all_cell_types;
+
+inline LocalIndex points_per_cell(CellType type) { return static_cast<LocalIndex>(quadrature_points(type)); }
+
+/// Straight-edged tet10 from tet4.
+inline Body with_middle_nodes(const Body& corners) {
+  Body body{.type = CellType::tet10, .rest = corners.rest, .nodes = {}};
+  std::map<std::pair<LocalIndex, LocalIndex>, LocalIndex> middles;
+  for (LocalIndex c = 0; c < corners.cells(); ++c) {
+    const auto cell = corners.cell(c);
+    body.nodes.insert(body.nodes.end(), cell.begin(), cell.end());
+    for (const auto& [a, b] :
+         {std::pair<std::size_t, std::size_t>{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}) {
+      const auto edge = std::minmax(cell[a], cell[b]);
+      const auto [middle, is_new] =
+          middles.try_emplace({edge.first, edge.second}, static_cast<LocalIndex>(body.rest.size()));
+      if (is_new)
+        body.rest.push_back(0.5 * (body.rest[static_cast<std::size_t>(cell[a])] +
+                                   body.rest[static_cast<std::size_t>(cell[b])]));
+      body.nodes.push_back(middle->second);
+    }
+  }
+  return body;
+}
+
+/// nx × ny × nz cubes of the given edge, each one hexahedron, two wedges or six tetrahedra; corners shaken by
+/// `shake` edges.
 inline Body box(CellType type, int nx, int ny, int nz, double edge = 0.1, double shake = 0.1) {
+  if (type == CellType::tet10) return with_middle_nodes(box(CellType::tet4, nx, ny, nz, edge, shake));
   Body body{.type = type, .rest = {}, .nodes = {}};
   const auto id = [=](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
   std::mt19937_64 random(11);
@@ -72,6 +100,11 @@ inline Body box(CellType type, int nx, int ny, int nz, double edge = 0.1, double
             id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
         if (type == CellType::hex8) {
           body.nodes.insert(body.nodes.end(), v.begin(), v.end());
+          continue;
+        }
+        if (type == CellType::wedge6) {
+          body.nodes.insert(body.nodes.end(), {v[0], v[1], v[2], v[4], v[5], v[6]});
+          body.nodes.insert(body.nodes.end(), {v[0], v[2], v[3], v[4], v[6], v[7]});
           continue;
         }
         for (const auto& [a, b] :

@@ -74,17 +74,6 @@ TEST(CpuLevel, LanesGrowWithTheLevel) {
   }
 }
 
-TEST(MakeElasticBlock, RefusesTypesWithoutAnElement) {
-  const std::vector<LocalIndex> nodes{0, 1, 2, 3, 4, 5};
-  const std::vector<Vec3d> rest(6);
-  try {
-    static_cast<void>(make_elastic_block({CellType::wedge6, nodes, 0, 1000}, rest, NeoHookean{}, no_damping));
-    FAIL() << "no error";
-  } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(), "cells of type wedge6 cannot be simulated; allowed are tet4 or hex8");
-  }
-}
-
 TEST(MakeElasticBlock, NoCellsMakeAnEmptyBlock) {
   const auto block =
       make_elastic_block({CellType::tet4, {}, 0, 1000}, {}, NeoHookean{.lame = soft}, rotated_damping);

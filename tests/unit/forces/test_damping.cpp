@@ -7,7 +7,6 @@
 namespace evert::test {
 namespace {
 
-constexpr std::array both_elements{CellType::tet4, CellType::hex8};
 constexpr std::array both_models{rotated_damping, objective_damping};
 
 std::string label(const Body& body, const Damping& damping, const std::string& state) {
@@ -50,7 +49,7 @@ Eigen::MatrixXd assembled(const ElasticBlock& block, std::size_t nodes) {
 }
 
 TEST(Damping, IsSymmetricAndPositiveSemidefinite) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Damping& damping : both_models) {
       const auto block =
@@ -73,7 +72,7 @@ TEST(Damping, IsSymmetricAndPositiveSemidefinite) {
 }
 
 TEST(Damping, DenseMatricesAndDiagonalBlocksEqualTheProduct) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Damping& damping : both_models) {
       for (const auto& level : supported_levels()) {
@@ -107,7 +106,7 @@ TEST(Damping, DenseMatricesAndDiagonalBlocksEqualTheProduct) {
 /// PHYSICS 4, written out once more: P = U P̂ Vᵀ with P̂ = β(Ḟ̂ + Ḟ̂ᵀ) + α tr(Ḟ̂) I, Ḟ̂ = Uᵀ Ḟ V; and
 /// P = F(2βĖ + α tr(Ė) I).
 TEST(Damping, IsTheLawOfThePaper) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
     for (const Damping& damping : both_models) {
@@ -167,7 +166,7 @@ NodalValues rotating(const Body& body, const NodalValues& x, const Vec3d& angula
 }
 
 TEST(Damping, LeavesRigidMotionAlone) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues drift = nodal_values(std::vector<Vec3d>(body.rest.size(), Vec3d{1, -2, 3}));
     for (const Damping& damping : both_models) {
@@ -194,7 +193,7 @@ TEST(Damping, LeavesRigidMotionAlone) {
 }
 
 TEST(Damping, ConservesMomentumAndObjectiveAlsoAngularMomentum) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
     for (const Damping& damping : both_models) {
@@ -226,7 +225,7 @@ TEST(Damping, ObjectiveVanishesWhenFlat) {
 }
 
 TEST(Damping, PacksAgreeWithScalars) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
     for (const Damping& damping : both_models) {

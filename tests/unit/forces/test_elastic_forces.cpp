@@ -11,8 +11,6 @@
 namespace evert::test {
 namespace {
 
-constexpr std::array both_elements{CellType::tet4, CellType::hex8};
-
 /// Body, material and state by name, for messages.
 std::string label(const Body& body, const Material& material, const std::string& state) {
   return std::string(evert::name_of(body.type)) + ", " + name_of(material) + ", " + state;
@@ -25,7 +23,7 @@ bool has_a_potential(const Material& material) {
 }
 
 TEST(ElasticForces, AgreeWithLongDouble) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       for (const auto& level : supported_levels()) {
@@ -51,7 +49,7 @@ TEST(ElasticForces, AgreeWithLongDouble) {
 
 /// f = −∂E/∂x, every component, by central differences.
 TEST(ElasticForces, AreTheGradientOfTheEnergy) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = type == CellType::tet4 ? box(type, 1, 1, 2) : box(type, 2, 1, 1);
     for (const Material& material : all_materials()) {
       if (!has_a_potential(material)) continue;
@@ -107,7 +105,7 @@ TEST(ElasticForces, OfASquashedBlockAreExactToRounding) {
 }
 
 TEST(ElasticForces, HaveNoResultantAndNoTorque) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
@@ -132,7 +130,7 @@ TEST(ElasticForces, HaveNoResultantAndNoTorque) {
 TEST(ElasticForces, TurnWithTheBodyAndIgnoreWhereItIs) {
   const Mat3d turn = rotation(2.1);
   const Vec3d shift{0.5, -0.25, 2};
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
@@ -154,7 +152,7 @@ TEST(ElasticForces, TurnWithTheBodyAndIgnoreWhereItIs) {
 }
 
 TEST(ElasticForces, VanishAtRest) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
@@ -168,7 +166,7 @@ TEST(ElasticForces, VanishAtRest) {
 /// Every count of cells from 1 to 9, split between interior and boundary: padding adds nothing and reaches
 /// nowhere.
 TEST(ElasticForces, PaddingIsSafeAndPacksAgreeWithScalars) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body whole = box(type, 3, 3, 1);
     for (LocalIndex cells = 1; cells <= 9; ++cells) {
       Body body = whole;
@@ -195,7 +193,7 @@ TEST(ElasticForces, PaddingIsSafeAndPacksAgreeWithScalars) {
 }
 
 TEST(ElasticForces, AreBitwiseRepeatable) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       for (const State& state : awkward_states(body)) {
@@ -214,7 +212,7 @@ TEST(ElasticForces, AreBitwiseRepeatable) {
 /// Another order of the cells makes other batches, and sums in another order.
 TEST(ElasticForces, DoNotDependOnTheOrderOfTheCells) {
   std::mt19937_64 random(17);
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const std::size_t per_cell = body.nodes_per_cell();
     std::vector<LocalIndex> order(static_cast<std::size_t>(body.cells()));
@@ -277,7 +275,7 @@ TEST(ElasticForces, NotANumberComesOutAsNotANumber) {
 
 TEST(SetMaterial, IsAsIfMadeAnew) {
   for (const Lame& lame : {Lame{2 * soft.lambda, 2 * soft.mu}, Lame::from_young_poisson(3e4, 0.2), Lame{}}) {
-    for (const CellType type : both_elements) {
+    for (const CellType type : all_elements) {
       const Body body = small_body(type);
       for (std::size_t model = 0; model < all_materials().size(); ++model) {
         const auto changed =

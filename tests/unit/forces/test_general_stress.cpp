@@ -58,6 +58,8 @@ void for_each_kernel(Check&& check) {
   both.template operator()<tet4>();
   both.template operator()<hex8_by_gradients>();
   both.template operator()<hex8>();
+  both.template operator()<wedge6>();
+  both.template operator()<tet10>();
 }
 
 TEST(GeneralStress, IsTakenByWhatAModelOffers) {

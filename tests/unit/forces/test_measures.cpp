@@ -9,8 +9,6 @@
 namespace evert::test {
 namespace {
 
-constexpr std::array both_elements{CellType::tet4, CellType::hex8};
-
 Body small_body(CellType type) { return type == CellType::tet4 ? box(type, 3, 2, 2) : box(type, 4, 3, 1); }
 
 /// F in long double at every point of every cell.
@@ -36,7 +34,7 @@ std::vector<std::vector<Mat3<long double>>> deformation_gradients(const Body& bo
 }
 
 TEST(MinStretch, IsTheSmallestSignedSingularValueAndCountsTheInverted) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const auto& level : supported_levels()) {
       const auto block = level_block(level, body, NeoHookean{.lame = soft}, no_damping, 7);
@@ -62,11 +60,11 @@ TEST(MinStretch, IsTheSmallestSignedSingularValueAndCountsTheInverted) {
 }
 
 TEST(InvertedPoints, CountsAMirroredBodyWhole) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const auto block =
         make_elastic_block(body.elastic_cells(3), body.rest, NeoHookean{.lame = soft}, no_damping);
-    const LocalIndex points = body.cells() * (type == CellType::tet4 ? 1 : 8);
+    const LocalIndex points = body.cells() * points_per_cell(type);
     EXPECT_EQ(block->inverted_points(nodal_values(body.rest).data()), 0);
     const auto mirrored = [&](double scale) {
       return deformed(body, [=](const Vec3d& p) { return Vec3d{p[0], -scale * p[1], p[2]}; });
@@ -88,7 +86,7 @@ TEST(InvertedPoints, CountsAMirroredBodyWhole) {
 class MaxStrainRate : public testing::TestWithParam<DampingModel> {};
 
 TEST_P(MaxStrainRate, IsThatOfTheStretchesAndIgnoresRotation) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const auto& level : supported_levels()) {
       const auto block = level_block(level, body, NeoHookean{.lame = soft}, {GetParam(), 1, 1}, 7);
@@ -122,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(All, MaxStrainRate,
                          testing::Values(DampingModel::none, DampingModel::rotated, DampingModel::objective));
 
 TEST(LumpedMass, IsPositiveAndSumsToTheMassAndItsMoment) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = box(type, 3, 2, 4, 0.1, 0.0);
     std::vector<double> mass(body.rest.size(), 0.0);
     add_lumped_mass(body.elastic_cells(), body.rest, mass);

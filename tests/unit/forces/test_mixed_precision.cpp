@@ -10,8 +10,6 @@
 namespace evert::test {
 namespace {
 
-constexpr std::array both_elements{CellType::tet4, CellType::hex8};
-
 /// Tolerances of the tests in double, for the same roundings of another size.
 constexpr double floats = std::numeric_limits<float>::epsilon() / std::numeric_limits<double>::epsilon();
 
@@ -41,7 +39,7 @@ std::unique_ptr<ElasticBlock> full_block(const Body& body, const Material& mater
 
 /// F is rounded by parts of 1, so the error of a force is relative to the moduli and not to the force.
 TEST(MixedPrecision, ForcesAreAsExactAsFloatsAllow) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       for (const auto& level : supported_levels()) {
@@ -65,7 +63,7 @@ TEST(MixedPrecision, ForcesAreAsExactAsFloatsAllow) {
 /// Differences of positions are taken in double: far from the origin nothing is lost but what the positions
 /// themselves lose.
 TEST(MixedPrecision, IgnoresWhereTheBodyIs) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const Material material = NeoHookean{.lame = soft};
     const auto block = mixed_block(body, material, no_damping);
@@ -82,7 +80,7 @@ TEST(MixedPrecision, IgnoresWhereTheBodyIs) {
 
 /// Forces are summed in double, those of a cell to nothing.
 TEST(MixedPrecision, HasNoResultant) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     for (const Material& material : all_materials()) {
       const auto block = mixed_block(body, material, rotated_damping);
@@ -106,7 +104,7 @@ TEST(MixedPrecision, HasNoResultant) {
 /// The operator of the rounded state is still one operator: symmetric to the rounding of its product, and as
 /// near to that of the state in double as floats are.
 TEST(MixedPrecision, DampingIsNearThatInDouble) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size()), w = random_velocities(body.rest.size(), 6);
     const auto product = [](const NodalValues& a, const NodalValues& b) {
@@ -152,7 +150,7 @@ TEST(MixedPrecision, DampingIsNearThatInDouble) {
 }
 
 TEST(MixedPrecision, MeasuresAreNearThoseInDouble) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
     for (const Material& material : all_materials()) {
@@ -185,10 +183,10 @@ TEST(MixedPrecision, MeasuresAreNearThoseInDouble) {
 }
 
 TEST(MixedPrecision, CountsTheInverted) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const auto block = mixed_block(body, NeoHookean{.lame = soft}, no_damping);
-    const LocalIndex points = body.cells() * (type == CellType::tet4 ? 1 : 8);
+    const LocalIndex points = body.cells() * points_per_cell(type);
     const auto inverted = [&](const Vec3d& scale) {
       return block->inverted_points(deformed(body, [&](const Vec3d& p) {
                                       return Vec3d{scale[0] * p[0], scale[1] * p[1], scale[2] * p[2]};
@@ -211,7 +209,7 @@ TEST(MixedPrecision, AStateThatIsNotFiniteHasNoStableStep) {
 }
 
 TEST(MixedPrecision, IsBitwiseRepeatableAndPaddingIsSafe) {
-  for (const CellType type : both_elements) {
+  for (const CellType type : all_elements) {
     const Body whole = box(type, 3, 3, 2);
     for (const LocalIndex cells : {1, 2, 3, 5, 8, 15, 16, 17}) {
       Body body = whole;

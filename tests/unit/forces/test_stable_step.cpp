@@ -197,7 +197,7 @@ TEST(StableStep, OfFlatCellsUnderTensionIsRaisedByDamping) {
 
 /// The bound never exceeds the true limit at rest, for both elements and shaken meshes.
 TEST(StableStep, IsABoundAtRest) {
-  for (const CellType type : {CellType::tet4, CellType::hex8}) {
+  for (const CellType type : all_elements) {
     for (const double nu : {-0.3, 0.0, 0.3, 0.45}) {
       const Body body = box(type, 2, 2, 2, 0.1, 0.2);
       const Lame lame = Lame::from_young_poisson(1e4, nu);
@@ -252,7 +252,7 @@ TEST(StableStep, ShrinksAsNeoHookeanIsCompressed) {
 }
 
 TEST(StableStep, LevelsAndScalarsAgree) {
-  for (const CellType type : {CellType::tet4, CellType::hex8}) {
+  for (const CellType type : all_elements) {
     const Body body = box(type, 3, 2, 1);
     for (const Material& material : all_materials()) {
       for (const Damping& damping : {rotated_damping, objective_damping}) {
