@@ -35,9 +35,14 @@ KernelCost cost_of(Work&& work) {
           8 * numbers_in_memory(log.read, frame) + 16 * numbers_in_memory(log.written, frame)};
 }
 
-/// Unit tetrahedron and unit cube, nodes in the order of VTK.
+/// Unit tetrahedra, half of a unit cube and the cube, nodes in the order of VTK.
 std::vector<Vec3d> unit_cell(CellType type) {
   if (type == CellType::tet4) return {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+  if (type == CellType::wedge6)
+    return {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 0, 1}}, {{0, 1, 1}}};
+  if (type == CellType::tet10)
+    return {{{0, 0, 0}},     {{1, 0, 0}},   {{0, 1, 0}},   {{0, 0, 1}},     {{0.5, 0, 0}},
+            {{0.5, 0.5, 0}}, {{0, 0.5, 0}}, {{0, 0, 0.5}}, {{0.5, 0, 0.5}}, {{0, 0.5, 0.5}}};
   return {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},
           {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
 }
@@ -85,8 +90,17 @@ KernelCost force_cost_of(CountedCell<element> cell) {
 }  // namespace
 
 KernelCost force_cost(CellType type, DampingModel damping) {
-  return type == CellType::tet4 ? force_cost_of(cell_of_library<tet4>(damping))
-                                : force_cost_of(cell_of_library<hex8>(damping));
+  switch (type) {
+    case CellType::tet4:
+      return force_cost_of(cell_of_library<tet4>(damping));
+    case CellType::hex8:
+      return force_cost_of(cell_of_library<hex8>(damping));
+    case CellType::wedge6:
+      return force_cost_of(cell_of_library<wedge6>(damping));
+    case CellType::tet10:
+      return force_cost_of(cell_of_library<tet10>(damping));
+  }
+  return {};
 }
 
 KernelCost general_path_cost() {

@@ -2,6 +2,7 @@
 
 #include "evert/bench/level_kernels.hpp"
 #include "evert/core/collective.hpp"
+#include "evert/mesh/partition.hpp"
 
 #include <algorithm>
 
@@ -107,6 +108,16 @@ void HexSubject::general_force() {
   const double* x = specimen_.positions.local().data();
   general_->update(x, result_.local().data(), general_->interior());
   general_->update(x, result_.local().data(), general_->boundary());
+}
+
+ElementSubject::ElementSubject(MPI_Comm comm, CellType type, int divisions)
+    : type_(type),
+      specimen_(comm, type, divisions),
+      result_(specimen_.mesh),
+      plain_(elastic(specimen_, DampingModel::none)) {}
+
+double ElementSubject::points() const {
+  return static_cast<double>(specimen_.mesh.total_cells) * quadrature_points(type_);
 }
 
 CeilingSubject::CeilingSubject(std::size_t memory) {

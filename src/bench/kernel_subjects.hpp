@@ -100,6 +100,25 @@ class HexSubject {
   std::unique_ptr<ElasticBlock> general_;
 };
 
+/// A box of cells of one type, for the types without a subject of their own.
+class ElementSubject {
+ public:
+  /// Collective.
+  ElementSubject(MPI_Comm comm, CellType type, int divisions);
+
+  [[nodiscard]] double points() const;
+  [[nodiscard]] double nodes_per_point() const {
+    return static_cast<double>(specimen_.mesh.total_nodes) / points();
+  }
+  void force() { plain_.update(specimen_.positions, result_); }
+
+ private:
+  CellType type_;
+  Specimen specimen_;
+  NodeField result_;
+  ElasticForces plain_;
+};
+
 /// What the machine can do.
 class CeilingSubject {
  public:

@@ -25,7 +25,15 @@ KernelCost with_nodes(KernelCost cells, double nodes_per_item) {
   return {cells.flops, cells.divisions, cells.bytes + nodes_per_item * nodal_bytes};
 }
 
-std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes) {
+/// The force of one more element.
+Kernel force_kernel(const std::string& name, CellType type, ElementSubject& cells) {
+  return {name + "_force_mqps", name + " force",
+          "Mpoint/s",           {cells.points(), [&] { cells.force(); }},
+          Yardstick::naive,     with_nodes(force_cost(type, DampingModel::none), cells.nodes_per_point())};
+}
+
+std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes, ElementSubject& wedges,
+                               ElementSubject& quadratic) {
   const double nodes = tets.nodes_per_cell();
   const auto damping = with_nodes(damping_cost(), nodes);
   return {
@@ -47,6 +55,8 @@ std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes) {
        {hexes.points(), [&] { hexes.force(); }},
        Yardstick::naive,
        with_nodes(force_cost(CellType::hex8, DampingModel::none), hexes.nodes_per_point())},
+      force_kernel("wedge6", CellType::wedge6, wedges),
+      force_kernel("tet10", CellType::tet10, quadratic),
       {"general_path_mqps",
        "hex8 force by U and V",
        "Mpoint/s",
@@ -119,9 +129,12 @@ std::span<const KernelSize> kernel_sizes() {
 KernelSizeReport measure_kernels(MPI_Comm comm, const KernelSize& size, double seconds) {
   TetSubject tets(comm, size.tet_divisions);
   HexSubject hexes(comm, size.hex_divisions);
+  // About as many points as the hexahedra have: twelve a cube in wedges, twenty-four in quadratic tetrahedra.
+  ElementSubject wedges(comm, CellType::wedge6, size.hex_divisions * 7 / 8);
+  ElementSubject quadratic(comm, CellType::tet10, size.hex_divisions * 2 / 3);
   CeilingSubject ceilings(tets.memory());
 
-  const auto kernels = kernels_of(tets, hexes);
+  const auto kernels = kernels_of(tets, hexes, wedges, quadratic);
   std::vector<Workload> workloads;
   for (const auto& kernel : kernels) workloads.push_back(kernel.workload);
   workloads.push_back({sum_over_ranks(comm, CeilingSubject::flops()), [&] { ceilings.multiply_add(); }});

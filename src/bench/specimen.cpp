@@ -3,6 +3,7 @@
 #include "evert/core/collective.hpp"
 #include "evert/math/nodal.hpp"
 #include "evert/mesh/generators.hpp"
+#include "evert/mesh/quadratic.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -44,18 +45,23 @@ class NodeRandom {
 
 enum Purpose : std::uint64_t { rest, shake, velocity };
 
+BoxCells cells_for(CellType type) {
+  if (type == CellType::hex8) return BoxCells::hex8;
+  return type == CellType::wedge6 ? BoxCells::wedge6 : BoxCells::tet6;
+}
+
 /// Collective; only rank 0 needs the mesh.
 DistributedMesh jittered_box(MPI_Comm comm, CellType type, int divisions) {
   Mesh mesh;
   on_root(comm, [&] {
     const double side = divisions;
-    mesh = generate_box({side, side, side}, {divisions, divisions, divisions},
-                        type == CellType::tet4 ? BoxCells::tet6 : BoxCells::hex8);
+    mesh = generate_box({side, side, side}, {divisions, divisions, divisions}, cells_for(type));
     for (GlobalIndex node = 0; node < mesh.node_count(); ++node) {
       NodeRandom random(node, rest);
       for (double& x : mesh.nodes[static_cast<std::size_t>(node)].components)
         x += jitter * (2 * random.uniform() - 1);
     }
+    if (type == CellType::tet10) make_quadratic(mesh);
   });
   return distribute(comm, mesh);
 }

@@ -139,6 +139,9 @@ const Table<BodyConfig>& body_table() {
       Table<BodyConfig>("A deformable body.")
           .required("mesh", &BodyConfig::mesh, table_of(mesh_table()),
                     "{generate: ball, radius: 0.5, edge_length: 0.1}", "Its rest shape.")
+          .optional("order", &BodyConfig::order, integer(1, 2), "2",
+                    "Of the shape functions. 2 puts a node in the middle of every edge of a mesh of "
+                    "tetrahedra: they bend, and hardly lock when nearly incompressible.")
           .optional("transform", &BodyConfig::transform, table_of(transform_table()),
                     "{translate: [0, 1, 0]}", "Size and place of the rest shape.")
           .required("density", &BodyConfig::density, number("kg/m^3", above(0)), "1000",

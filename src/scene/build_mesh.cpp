@@ -1,4 +1,5 @@
 #include "evert/core/error.hpp"
+#include "evert/mesh/quadratic.hpp"
 #include "evert/mesh/repair.hpp"
 #include "evert/scene/body_mesh.hpp"
 #include "evert/scene/build.hpp"
@@ -105,6 +106,11 @@ Mesh body_mesh(const BodyConfig& body) {
   place(mesh, body.transform);
   const auto* file = std::get_if<FileMesh>(&body.mesh);
   require_positive_volumes(mesh, file != nullptr ? file->path : "bodies." + body.name + ".mesh");
+  try {
+    if (body.order == 2) make_quadratic(mesh);
+  } catch (const UserError& error) {
+    throw UserError("bodies." + body.name + ".order: " + error.what());
+  }
   return mesh;
 }
 

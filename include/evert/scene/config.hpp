@@ -123,6 +123,7 @@ struct GroupConfig {
 struct BodyConfig {
   std::string name;
   MeshConfig mesh;
+  int order = 1;  ///< of the shape functions: 1, or 2 for tetrahedra with middle nodes
   TransformConfig transform;
   double density = 0;  ///< [kg/m^3] > 0
   Vec3d velocity{};    ///< [m/s] initial

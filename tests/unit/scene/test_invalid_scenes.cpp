@@ -39,7 +39,7 @@ const std::vector<Mistake> mistakes{
      "radius, "
      "friction or velocity"},
     {"merge_key", "density: 1000", "<<: {density: 1000}",
-     "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, transform, "
+     "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, order, transform, "
      "density, velocity, spin, start, material, damping, precision or groups"},
     // duplicate keys
     {"duplicate_key", "density: 1000", "density: 1000\n    density: 1000",
