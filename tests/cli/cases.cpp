@@ -282,8 +282,8 @@ const std::vector<Case> bad_scenes{
               {"damping_ksp_rtl", "damping_ksp_rtol"}),
     bad_scene("order_of_three", {"    density: 1000\n", "    density: 1000\n    order: 3\n"}, {"order", "2"}),
     {.name = "quadratic_hexahedra",
-     .files = {scene({{"cell: tet6", "cell: hex8"},
-                      {"    density: 1000\n", "    density: 1000\n    order: 2\n"}})},
+     .files = {scene(
+         {{"cell: tet6", "cell: hex8"}, {"    density: 1000\n", "    density: 1000\n    order: 2\n"}})},
      .says = {"bodies.cube.order", "only tetrahedra", "hex8"}},
     {.name = "more_ranks_than_cells",
      .files = {scene({{"cells: [2, 2, 2], cell: tet6", "cells: [1, 1, 1], cell: hex8"}})},
