@@ -75,18 +75,15 @@ Creep creep_between(const std::vector<double>& before, const std::vector<double>
 TEST(Friction, SticksBelowTheCoulombAngle) {
   const double friction = 0.3;
   for (const double damping_time : {5e-4, 5e-3}) {  // with the latter a step spans several undamped ones
-    for (const double share : {0.5, 0.8, 0.9, 0.95}) {
-      auto scene = block_on_slope(std::atan(friction) * share, friction, damping_time);
-      auto& simulation = *scene.simulation;
-      run_until(simulation, 1.0);  // the block settles on its springs
-      const auto settled = test::gathered(simulation.mesh(), simulation.positions());
-      run_until(simulation, 3.0);
-      const auto later = test::gathered(simulation.mesh(), simulation.positions());
-      const auto creep = creep_between(settled, later);
-      EXPECT_LE(std::abs(creep.mean), 1e-6)
-          << share << " of the Coulomb angle, damping " << damping_time << " s";
-      EXPECT_LE(creep.largest, 1e-5) << share << " of the Coulomb angle, damping " << damping_time << " s";
-    }
+    auto scene = block_on_slope(std::atan(friction) * 0.9, friction, damping_time);
+    auto& simulation = *scene.simulation;
+    run_until(simulation, 1.0);  // the block settles on its springs
+    const auto settled = test::gathered(simulation.mesh(), simulation.positions());
+    run_until(simulation, 2.0);
+    const auto later = test::gathered(simulation.mesh(), simulation.positions());
+    const auto creep = creep_between(settled, later);
+    EXPECT_LE(std::abs(creep.mean), 1e-6) << "damping " << damping_time << " s";
+    EXPECT_LE(creep.largest, 1e-5) << "damping " << damping_time << " s";
   }
 }
 
