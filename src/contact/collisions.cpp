@@ -25,6 +25,12 @@ double most_friction(const Obstacle& obstacle, const Vec3d& normal, const Vec3d&
   return obstacle.friction() * std::max(0.0, dot(reaction, normal));
 }
 
+/// True where friction against `sliding` has turned the motion off it by more than 60 degrees: it is strong
+/// enough to stop the node, and only the lag of its direction makes the node move.
+bool is_turned(const Vec3d& motion, const Vec3d& sliding) {
+  return dot(motion, sliding) < 0.5 * norm(motion) * norm(sliding);
+}
+
 /// Sliding slower than this share of the velocities involved is rounding.
 constexpr double standstill = 1e-12;
 
@@ -140,13 +146,16 @@ void Collisions::slide(std::span<const double> v, std::span<double> reaction) {
   }
 }
 
-/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not.
+/// Coulomb's law for one contact: whether it sticks, and the impulse on it if not. What sticks again sticks
+/// for the rest of the step: let go once more it would come round once more, and leave a step in which it
+/// moves.
 Collisions::Contact Collisions::after_solve(Contact contact, const Vec3d& velocity, const Vec3d& reaction) {
   const double allowed = most_friction(*contact.obstacle, contact.normal, reaction);
   const bool stuck = contact.sticks;
   const auto held = along_surface(reaction, contact.normal);
   const auto motion = along_surface(velocity - contact.body_velocity, contact.normal);
-  contact.sticks = stuck ? norm(held) <= allowed : dot(motion, contact.sliding) < 0;
+  contact.sticks = stuck ? contact.stopped || norm(held) <= allowed : is_turned(motion, contact.sliding);
+  contact.stopped = contact.stopped || (contact.sticks && !stuck);
   const auto towards = stuck ? -held : motion;
   const double size = norm(towards);
   contact.sliding = contact.sticks || size == 0 ? Vec3d{} : (1 / size) * towards;
@@ -164,7 +173,7 @@ void Collisions::stop_reversed(std::span<double> v) {
   for (const auto& contact : contacts_) {
     const auto velocity = node_value(v, contact.node);
     const auto sliding = along_surface(velocity - contact.body_velocity, contact.normal);
-    if (dot(sliding, contact.sliding) >= 0) continue;
+    if (!is_turned(sliding, contact.sliding)) continue;
     set_node_value(v, contact.node, velocity - sliding);
     impulse_ -= masses_[static_cast<std::size_t>(contact.node)] * sliding;
   }

@@ -43,7 +43,9 @@ const Table<IntegratorConfig>& integrator_table() {
           .optional("safety", &IntegratorConfig::safety, number("-", above_up_to(0, 1)), "0.5",
                     "With auto: fraction of the stable step.")
           .optional("max_strain_increment", &IntegratorConfig::max_strain_increment, number("-", above(0)),
-                    "0.05", "With auto: largest change of strain of an element in one step.");
+                    "0.05",
+                    "With auto: largest change of strain of an element in one step, relative to its stretch "
+                    "above 1.");
   return table;
 }
 

@@ -19,26 +19,27 @@ long not_finite(const NodeField& field) {
   return count;
 }
 
-/// On rank 0: what the run took.
+/// On rank 0: a row of the table in docs/design/time-stepping.md.
 void report(const std::string& mesh, const Simulation& simulation, double wall_seconds, double imbalance) {
   int rank = 0, ranks = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   if (rank == 0)
-    std::printf("%s on %d ranks: %lld steps, %.0f s, momentum balanced to %.1e\n", mesh.c_str(), ranks,
+    std::printf("| %s | %d | %.2g | %lld | %.0f | %.1e |\n", mesh.c_str(), ranks, simulation.time(),
                 static_cast<long long>(simulation.steps()), wall_seconds, imbalance);
 }
 
-class RealMesh : public testing::TestWithParam<const char*> {};
+void run_until(Simulation& simulation, double end) {
+  while (simulation.time() < end) {
+    const double left = end - simulation.time();
+    const double steps = std::ceil(left / simulation.suggested_time_step() - 1e-9);
+    steps <= 1 ? simulation.step_to(end) : simulation.step(left / steps);
+  }
+}
 
-TEST_P(RealMesh, DropsForASecondAndKeepsTheBalance) {
-  const bool small = std::string(GetParam()) == "liver.msh";
-  if (!small && std::getenv("EVERT_ALL_MESHES") == nullptr)
-    GTEST_SKIP() << "takes minutes: EVERT_ALL_MESHES=1 runs it";
-  const char* folder = std::getenv("EVERT_SHARED_MESHES");
-  const auto path = std::filesystem::path(folder == nullptr ? "" : folder) / GetParam();
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
-  auto scene = test::build(R"(
+/// So soft that it collapses under its weight. Steps in which slivers may flip at once: what they do there is
+/// of no interest, and most of them do nothing else.
+const std::string drop = R"(
 name: drop
 end_time: 1
 gravity: [0, -9.81, 0]
@@ -47,20 +48,27 @@ bodies:
     mesh: {file: mesh.msh}
     transform: {fit: 1, translate: [0, 0.7, 0]}
     density: 1000
-    material: {model: neo_hookean, youngs_modulus: 1.0e3, poissons_ratio: 0.4}
+    material: {model: neo_hookean, youngs_modulus: 1.0e3, poissons_ratio: 0.3}
     damping: {model: rotated, stiffness_proportional: 1.0e-3}
 obstacles:
   ground: {shape: half_space, normal: [0, 1, 0], friction: 0.3}
-)",
-                           {"bodies.body.mesh.file=" + path.string()});
+integrator: {max_strain_increment: 0.3}
+)";
+
+class RealMesh : public testing::TestWithParam<const char*> {};
+
+/// The large ones for minutes with EVERT_ALL_MESHES=1, else until they have hit the ground.
+TEST_P(RealMesh, DropsForASecondAndKeepsTheBalance) {
+  const bool whole = std::string(GetParam()) == "liver.msh" || std::getenv("EVERT_ALL_MESHES") != nullptr;
+  const char* folder = std::getenv("EVERT_SHARED_MESHES");
+  const auto path = std::filesystem::path(folder == nullptr ? "" : folder) / GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-damping_ksp_rtol", "1e-7"), 0);  // for a balance of 1e-9
+  auto scene = test::build(drop, {"bodies.body.mesh.file=" + path.string()});
   auto& simulation = *scene.simulation;
   const auto start = simulation.measure();
   const auto clock = std::chrono::steady_clock::now();
-  while (simulation.time() < 1.0) {
-    const double left = 1.0 - simulation.time();
-    const double steps = std::ceil(left / simulation.suggested_time_step() - 1e-9);
-    steps <= 1 ? simulation.step_to(1.0) : simulation.step(left / steps);
-  }
+  run_until(simulation, whole ? 1.0 : 0.26);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - clock;
   EXPECT_EQ(not_finite(simulation.positions()), 0);
   EXPECT_EQ(not_finite(simulation.velocities()), 0);

@@ -70,9 +70,10 @@ class Collisions {
     const Obstacle* obstacle;
     Vec3d normal;
     Vec3d body_velocity;
-    bool sticks;       // friction holds it
-    Vec3d sliding{};   // unit direction, where slide() found it sliding
-    Vec3d friction{};  // impulse that slide() put on it [N s]
+    bool sticks;           // friction holds it
+    bool stopped = false;  // again, after it has slid in this step
+    Vec3d sliding{};       // unit direction, where slide() found it sliding
+    Vec3d friction{};      // impulse that slide() put on it [N s]
   };
   void resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predicted, const StepInterval& step);
   void constrain(std::span<const Contact> of_node, Vec3d v);

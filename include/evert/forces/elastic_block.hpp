@@ -71,8 +71,8 @@ class ElasticBlock {
   [[nodiscard]] virtual LocalIndex inverted_points(const double* x) const = 0;
   /// Bound from the tangent at `x` (compressed nonlinear material is stiffer than at rest).  PHYSICS 5 and 9
   [[nodiscard]] virtual StableStep stable_step(const double* x) const = 0;
-  /// Largest principal rate of strain [1/s] at v and x, the positions of the last update, to limit the change
-  /// of strain in a step.
+  /// Largest rate of strain [1/s] at v and x, the positions of the last update, to limit the change of strain
+  /// in a step; relative to the stretch where that exceeds 1.
   [[nodiscard]] virtual double max_strain_rate(const double* x, const double* v) const = 0;
 
   /// λ_e [1/s²] of a cell: the largest eigenvalue of its stiffness at rest against its shares of mass.

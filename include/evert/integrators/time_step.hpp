@@ -5,8 +5,9 @@ namespace evert {
 
 /// `time_step: auto`: as large as stability and accuracy allow.  PHYSICS 5
 struct TimeStepOptions {
-  double safety = 0.9;                ///< share of the stable step, in (0, 1]
-  double max_strain_increment = 0.1;  ///< largest change of any element's strain in one step
+  double safety = 0.9;  ///< share of the stable step, in (0, 1]
+  double max_strain_increment =
+      0.1;  ///< largest change of any element's strain in one step, of its stretch above 1
 };
 
 /// Chooses the step from the element bounds at the current tangent. They are re-estimated every few steps,

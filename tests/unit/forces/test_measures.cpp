@@ -104,6 +104,14 @@ TEST_P(MaxStrainRate, IsThatOfTheStretchesAndIgnoresRotation) {
       std::vector<Vec3d> stretching;
       for (const Vec3d& rest : body.rest) stretching.push_back(turn * Vec3d{0, 0, 7 * rest[2]});
       EXPECT_NEAR(rate(x, stretching), 7, 1e-12) << level.name;
+      // Relative where stretched: one node of a flat cell moves it by many times its height.
+      const NodalValues drawn = deformed(body, [&](const Vec3d& p) {
+        return turn * Vec3d{p[0], 0.5 * p[1], 50 * p[2]};
+      });
+      EXPECT_NEAR(rate(drawn, stretching), 7.0 / 50, 1e-12) << level.name;
+      std::vector<Vec3d> shearing;
+      for (const Vec3d& rest : body.rest) shearing.push_back(turn * Vec3d{0, 6 * rest[2], 0});
+      EXPECT_NEAR(rate(drawn, shearing), 6 / std::sqrt(2.0 * 50), 1e-12) << level.name;
       // On a state that is not stretched uniformly a rotation turns the axes, but changes no stretch.
       const NodalValues uniform = deformed(body, [&](const Vec3d& p) { return 0.7 * (turn * p); });
       std::vector<Vec3d> spin_uniform;

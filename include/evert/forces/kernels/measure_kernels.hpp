@@ -131,58 +131,75 @@ EVERT_ALWAYS_INLINE T symmetric_square(const Mat3<T>& a) {
   return contract(symmetric, symmetric);
 }
 
-/// ‖sym(QᵀḞ)‖² at every point of the run, Q = U Vᵀ; in the principal frame the diagonal of that is dσ/dt.
-template <Real T, const auto& element>
-EVERT_STAGE void strain_rate_stage(const BlockArrays& block, const double* v, BatchRange batches,
-                                   const PointRun<T>& run, T& fastest_squared) {
-  std::size_t i = 0;
-  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
-    const CellBatch<T, element> batch(block, b);
-    const auto edges = batch.edges_of(v);
-    batch.shape.field_gradients(edges, [&](std::size_t q, const Mat3<T>& rate) {
-      const Mat3<T> rotation = polar_rotation(run.left[i + q], run.plane[i + q], run.right[i + q]);
-      fastest_squared = max(fastest_squared, symmetric_square(transpose_times(rotation, rate)));
+/// An upper bound of ‖sym(QᵀḞ)‖² over the points of a batch, Q = U Vᵀ. Of rotated damping it is the value
+/// itself, from what the operator keeps (‖sym(QᵀḞ)‖ = ‖sym(ḞQᵀ)‖); else ‖Ḟ‖², which counts rotation too.
+template <Real T, const auto& element, DampingModel damping>
+EVERT_ALWAYS_INLINE T strain_rate_bound(const BlockArrays& block, LocalIndex b, const double* v) {
+  const CellBatch<T, element> batch(block, b);
+  const DampingState<T, element, damping> state(block, b);
+  const auto edges = batch.edges_of(v);
+  T fastest_squared = T(0.0);
+  if constexpr (keeps_rotated_gradients<element, damping>) {
+    state.rotated_shape().field_gradients(edges, [&](std::size_t q, const Mat3<T>& scaled_rate) {
+      const T volume =
+          max(batch.volume(q), T(std::numeric_limits<scalar_t<T>>::min()));  // 0 in padding lanes
+      fastest_squared = max(fastest_squared, symmetric_square(scaled_rate) / volume);
     });
-    i += element.points;
+  } else {
+    batch.shape.field_gradients(edges, [&](std::size_t q, const Mat3<T>& rate) {
+      if constexpr (damping == DampingModel::rotated) {
+        fastest_squared = max(fastest_squared, symmetric_square(transpose_times(state.frame(q), rate)));
+      } else {
+        fastest_squared = max(fastest_squared, contract(rate, rate));
+      }
+    });
   }
+  return fastest_squared;
 }
 
-/// The same from what the damping operator keeps: of a rotation Q, ‖sym(QᵀḞ)‖ = ‖sym(ḞQᵀ)‖.
-template <Real T, const auto& element>
-EVERT_STAGE void kept_strain_rate_stage(const BlockArrays& block, const double* v, BatchRange batches,
-                                        T& fastest_squared) {
-  constexpr auto rotated = DampingModel::rotated;
-  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
-    const CellBatch<T, element> batch(block, b);
-    const DampingState<T, element, rotated> state(block, b);
-    const auto edges = batch.edges_of(v);
-    if constexpr (keeps_rotated_gradients<element, rotated>) {
-      state.rotated_shape().field_gradients(edges, [&](std::size_t q, const Mat3<T>& scaled_rate) {
-        const T volume =
-            max(batch.volume(q), T(std::numeric_limits<scalar_t<T>>::min()));  // 0 in padding lanes
-        fastest_squared = max(fastest_squared, symmetric_square(scaled_rate) / volume);
-      });
-    } else {
-      batch.shape.field_gradients(edges, [&](std::size_t q, const Mat3<T>& rate) {
-        fastest_squared = max(fastest_squared, symmetric_square(transpose_times(state.frame(q), rate)));
-      });
+/// ‖S‖² with S = sym(UᵀḞV), whose diagonal is dσ/dt, and its entry ij divided by √(g_i g_j), g = max(1, |σ|):
+/// the rate of strain where compressed, of logarithmic strain where stretched.
+template <Real T>
+EVERT_ALWAYS_INLINE T relative_strain_rate_squared(const Svd3<T>& f, const Mat3<T>& rate) {
+  const Mat3<T> principal = transpose_times(f.u, rate * f.v);
+  T sum = T(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const T twice = principal(i, j) + principal(j, i);
+      const T stretch = max(T(1.0), abs(f.sigma[i])) * max(T(1.0), abs(f.sigma[j]));
+      sum += T(i == j ? 0.25 : 0.5) * twice * twice / stretch;
     }
   }
+  return sum;
 }
 
-/// See ElasticBlock::max_strain_rate.
+/// The largest of these over the points of a batch.
+template <Real T, const auto& element>
+EVERT_STAGE T batch_strain_rate_squared(const BlockArrays& block, LocalIndex b, const double* x,
+                                        const double* v) {
+  std::array<Mat3<T>, element.points> deformation_gradients;
+  gather_field_gradients<T, element>(block, x, {b, b + 1}, deformation_gradients.data());
+  const CellBatch<T, element> batch(block, b);
+  T fastest_squared = T(0.0);
+  batch.shape.field_gradients(batch.edges_of(v), [&](std::size_t q, const Mat3<T>& rate) {
+    fastest_squared =
+        max(fastest_squared, relative_strain_rate_squared(svd3(deformation_gradients[q]), rate));
+  });
+  return fastest_squared;
+}
+
+/// See ElasticBlock::max_strain_rate. Stretches are looked at only where the bound exceeds what has been
+/// found.
 template <Real T, const auto& element, DampingModel damping>
 double max_strain_rate(const BlockArrays& block, const double* x, const double* v, BatchRange batches) {
-  T fastest_squared = T(0.0);
-  if constexpr (damping == DampingModel::rotated) {
-    kept_strain_rate_stage<T, element>(block, v, batches, fastest_squared);
-  } else {
-    for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
-      diagonalize(run, points);
-      strain_rate_stage<T, element>(block, v, piece, run, fastest_squared);
-    });
+  double fastest_squared = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    if (largest_lane(strain_rate_bound<T, element, damping>(block, b, v)) > fastest_squared) {
+      const T of_batch = batch_strain_rate_squared<T, element>(block, b, x, v);
+      fastest_squared = std::max(fastest_squared, largest_lane(of_batch));
+    }
   }
-  return std::sqrt(largest_lane(fastest_squared));
+  return std::sqrt(fastest_squared);
 }
 
 /// The damping time τ = min(β/μ, α/λ) that a point is credited with, of the element's own damping and
