@@ -1,8 +1,7 @@
 #include "evert/core/aligned.hpp"
 
-#include <sys/mman.h>
-
 #include <new>
+#include <sys/mman.h>
 
 namespace evert {
 namespace {

@@ -64,7 +64,8 @@ void require_value(const std::string& name, bool has_value, const std::string& s
 }
 
 bool is_read_later(std::string_view name, bool damped) {
-  return damped && name.starts_with(solver_prefix) && contains(late_options, name.substr(solver_prefix.size()));
+  return damped && name.starts_with(solver_prefix) &&
+         contains(late_options, name.substr(solver_prefix.size()));
 }
 
 /// Options that were put into the database but never read, sorted so that every rank names the same one.

@@ -4,9 +4,9 @@
 
 namespace evert {
 
-/// Memory for arrays that SIMD code reads: aligned to 64 bytes, one cache line and the widest register. From a
-/// MiB on it asks for huge pages (2 MiB), where the system grants them on request: one entry of the TLB then
-/// spans what 512 did. Throws std::bad_alloc.
+/// Memory for arrays that SIMD code reads: aligned to 64 bytes, one cache line and the widest register. From
+/// a MiB on it asks for huge pages (2 MiB), where the system grants them on request: one entry of the TLB
+/// then spans what 512 did. Throws std::bad_alloc.
 [[nodiscard]] void* allocate_aligned(std::size_t bytes);
 /// Takes back what allocate_aligned(bytes) gave.
 void free_aligned(void* memory, std::size_t bytes) noexcept;
