@@ -2,7 +2,6 @@
 
 #include "evert/bench/level_kernels.hpp"
 #include "evert/core/collective.hpp"
-#include "evert/mesh/partition.hpp"
 
 #include <algorithm>
 
@@ -93,10 +92,13 @@ void TetSubject::svd_part() {
   }
 }
 
-HexSubject::HexSubject(MPI_Comm comm, int divisions)
-    : specimen_(comm, CellType::hex8, divisions),
+ElementSubject::ElementSubject(MPI_Comm comm, CellType type, int divisions)
+    : type_(type),
+      specimen_(comm, type, divisions),
       result_(specimen_.mesh),
-      plain_(elastic(specimen_, DampingModel::none)) {
+      plain_(elastic(specimen_, DampingModel::none)) {}
+
+HexSubject::HexSubject(MPI_Comm comm, int divisions) : ElementSubject(comm, CellType::hex8, divisions) {
   const auto& cells = specimen_.mesh.cells.front();
   general_ =
       make_elastic_block({cells.type, cells.nodes, cells.interior, density}, specimen_.mesh.rest_positions,
@@ -108,16 +110,6 @@ void HexSubject::general_force() {
   const double* x = specimen_.positions.local().data();
   general_->update(x, result_.local().data(), general_->interior());
   general_->update(x, result_.local().data(), general_->boundary());
-}
-
-ElementSubject::ElementSubject(MPI_Comm comm, CellType type, int divisions)
-    : type_(type),
-      specimen_(comm, type, divisions),
-      result_(specimen_.mesh),
-      plain_(elastic(specimen_, DampingModel::none)) {}
-
-double ElementSubject::points() const {
-  return static_cast<double>(specimen_.mesh.total_cells) * quadrature_points(type_);
 }
 
 CeilingSubject::CeilingSubject(std::size_t memory) {

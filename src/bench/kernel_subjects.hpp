@@ -7,6 +7,7 @@
 #include "evert/forces/elastic_forces.hpp"
 #include "evert/integrators/damping_matrix.hpp"
 #include "evert/math/svd3_batch.hpp"
+#include "evert/mesh/partition.hpp"
 
 #include <memory>
 #include <vector>
@@ -78,45 +79,37 @@ class TetSubject {
   std::vector<Svd3<double>> decompositions_;
 };
 
-/// A box of hexahedra.
-class HexSubject {
- public:
-  /// Collective.
-  HexSubject(MPI_Comm comm, int divisions);
-
-  [[nodiscard]] double cells() const { return static_cast<double>(specimen_.mesh.total_cells); }
-  [[nodiscard]] double points() const { return 8 * cells(); }
-  [[nodiscard]] double nodes_per_point() const {
-    return static_cast<double>(specimen_.mesh.total_nodes) / points();
-  }
-  void force() { plain_.update(specimen_.positions, result_); }
-  /// By U and V, without sum factorisation; halo left out.
-  void general_force();
-
- private:
-  Specimen specimen_;
-  NodeField result_;
-  ElasticForces plain_;
-  std::unique_ptr<ElasticBlock> general_;
-};
-
-/// A box of cells of one type, for the types without a subject of their own.
+/// A box of cells of one type.
 class ElementSubject {
  public:
   /// Collective.
   ElementSubject(MPI_Comm comm, CellType type, int divisions);
 
-  [[nodiscard]] double points() const;
+  [[nodiscard]] double cells() const { return static_cast<double>(specimen_.mesh.total_cells); }
+  [[nodiscard]] double points() const { return cells() * quadrature_points(type_); }
   [[nodiscard]] double nodes_per_point() const {
     return static_cast<double>(specimen_.mesh.total_nodes) / points();
   }
   void force() { plain_.update(specimen_.positions, result_); }
 
- private:
+ protected:
   CellType type_;
   Specimen specimen_;
   NodeField result_;
   ElasticForces plain_;
+};
+
+/// A box of hexahedra, which also go the way of models that need U and V.
+class HexSubject : public ElementSubject {
+ public:
+  /// Collective.
+  HexSubject(MPI_Comm comm, int divisions);
+
+  /// By U and V, without sum factorisation; halo left out.
+  void general_force();
+
+ private:
+  std::unique_ptr<ElasticBlock> general_;
 };
 
 /// What the machine can do.

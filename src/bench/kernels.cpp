@@ -25,11 +25,11 @@ KernelCost with_nodes(KernelCost cells, double nodes_per_item) {
   return {cells.flops, cells.divisions, cells.bytes + nodes_per_item * nodal_bytes};
 }
 
-/// The force of one more element.
-Kernel force_kernel(const std::string& name, CellType type, ElementSubject& cells) {
-  return {name + "_force_mqps", name + " force",
-          "Mpoint/s",           {cells.points(), [&] { cells.force(); }},
-          Yardstick::naive,     with_nodes(force_cost(type, DampingModel::none), cells.nodes_per_point())};
+/// The force of one element.
+Kernel force_kernel(const std::string& key, CellType type, ElementSubject& cells) {
+  const auto cost = with_nodes(force_cost(type, DampingModel::none), cells.nodes_per_point());
+  const Workload force{cells.points(), [&] { cells.force(); }};
+  return {key, std::string(name_of(type)) + " force", "Mpoint/s", force, Yardstick::naive, cost};
 }
 
 std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes, ElementSubject& wedges,
@@ -49,14 +49,9 @@ std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes, ElementSubje
        {tets.cells(), [&] { tets.damped_force(); }},
        Yardstick::naive,
        with_nodes(force_cost(CellType::tet4, DampingModel::rotated), nodes)},
-      {"hex_force_mqps",
-       "hex8 force",
-       "Mpoint/s",
-       {hexes.points(), [&] { hexes.force(); }},
-       Yardstick::naive,
-       with_nodes(force_cost(CellType::hex8, DampingModel::none), hexes.nodes_per_point())},
-      force_kernel("wedge6", CellType::wedge6, wedges),
-      force_kernel("tet10", CellType::tet10, quadratic),
+      force_kernel("hex_force_mqps", CellType::hex8, hexes),
+      force_kernel("wedge6_force_mqps", CellType::wedge6, wedges),
+      force_kernel("tet10_force_mqps", CellType::tet10, quadratic),
       {"general_path_mqps",
        "hex8 force by U and V",
        "Mpoint/s",

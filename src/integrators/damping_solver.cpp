@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 
 namespace evert {
@@ -32,6 +33,13 @@ class VecView {
   PetscScalar* data_ = nullptr;
   std::size_t size_ = 0;
 };
+
+/// to = −from, in one pass.
+void set_to_negative(Vec to, Vec from) {
+  const VecView negative(to);
+  const VecView values(from);
+  std::transform(values.values().begin(), values.values().end(), negative.values().begin(), std::negate());
+}
 
 /// Of the residual that the last solve started from.
 double first_norm(KSP ksp) {
@@ -88,8 +96,7 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
   factor_ = s;
   impose(constraints, v.owned());
   v.touched();
-  check(VecCopy(b, reaction_.get()));
-  check(VecScale(reaction_.get(), -1.0));
+  set_to_negative(reaction_.get(), b);
   react(v.vec());
   reference_ = 0;
   return correct(v, constraints, along);
@@ -142,8 +149,7 @@ bool DampingSolver::impose_now(NodeField& v, std::span<const NodeConstraint> con
 
 /// Takes −P reaction_ off by changing `v` in the free directions.
 int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constraints, Vec along) {
-  check(VecCopy(reaction_.get(), projected_.get()));
-  check(VecScale(projected_.get(), -1.0));
+  set_to_negative(projected_.get(), reaction_.get());
   {
     const VecView right(projected_.get());
     project(constraints, right.values());

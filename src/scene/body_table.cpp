@@ -141,7 +141,7 @@ const Table<BodyConfig>& body_table() {
                     "{generate: ball, radius: 0.5, edge_length: 0.1}", "Its rest shape.")
           .optional("order", &BodyConfig::order, integer(1, 2), "2",
                     "Of the shape functions. 2 puts a node in the middle of every edge of a mesh of "
-                    "tetrahedra: they bend, and hardly lock when nearly incompressible.")
+                    "tetrahedra.")
           .optional("transform", &BodyConfig::transform, table_of(transform_table()),
                     "{translate: [0, 1, 0]}", "Size and place of the rest shape.")
           .required("density", &BodyConfig::density, number("kg/m^3", above(0)), "1000",
@@ -158,8 +158,9 @@ const Table<BodyConfig>& body_table() {
           .optional("precision", &BodyConfig::precision,
                     one_of<Precision>({{"double", Precision::full, "everything in double"},
                                        {"mixed", Precision::mixed,
-                                        "elements in float, nodes in double: faster, half the memory; unfit "
-                                        "for small strains (docs/performance.md)"}}),
+                                        "elements in float, nodes in double: less memory, faster but for the "
+                                        "damping of tetrahedra; unfit for small strains "
+                                        "(docs/performance.md)"}}),
                     "double", "Of the forces of its elements.")
           .optional("groups", &BodyConfig::groups, named(group_table()), "{tendon: {density: 1200}}",
                     "Volume groups of the mesh that differ from the body, by name.")

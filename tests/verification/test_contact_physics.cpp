@@ -59,19 +59,6 @@ TEST(Friction, SlidesWithCoulombsAcceleration) {
   }
 }
 
-/// The mean displacement along the slope, and the largest of any node [m].
-struct Creep {
-  double mean = 0, largest = 0;
-};
-
-Creep creep_between(const std::vector<double>& before, const std::vector<double>& after) {
-  Creep creep;
-  for (std::size_t i = 0; i < before.size(); i += 3)
-    creep.mean += (after[i] - before[i]) / (static_cast<double>(before.size()) / 3);
-  creep.largest = test::largest_difference(before, after);
-  return creep;
-}
-
 TEST(Friction, SticksBelowTheCoulombAngle) {
   const double friction = 0.3;
   for (const double damping_time : {5e-4, 5e-3}) {  // with the latter a step spans several undamped ones
@@ -79,11 +66,9 @@ TEST(Friction, SticksBelowTheCoulombAngle) {
     auto& simulation = *scene.simulation;
     run_until(simulation, 1.0);  // the block settles on its springs
     const auto settled = test::gathered(simulation.mesh(), simulation.positions());
-    run_until(simulation, 2.0);
+    run_until(simulation, 3.0);
     const auto later = test::gathered(simulation.mesh(), simulation.positions());
-    const auto creep = creep_between(settled, later);
-    EXPECT_LE(std::abs(creep.mean), 1e-6) << "damping " << damping_time << " s";
-    EXPECT_LE(creep.largest, 1e-5) << "damping " << damping_time << " s";
+    EXPECT_LE(test::largest_difference(settled, later), 1e-6) << "damping " << damping_time << " s";
   }
 }
 

@@ -5,12 +5,12 @@
 #include "evert/forces/kernels/cpu_level.hpp"
 #include "evert/forces/kernels/kernel_table.hpp"
 #include "evert/mesh/partition.hpp"
+#include "evert/mesh/quadratic.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <memory>
 #include <random>
 #include <span>
@@ -57,22 +57,13 @@ inline LocalIndex points_per_cell(CellType type) { return static_cast<LocalIndex
 
 /// Straight-edged tet10 from tet4.
 inline Body with_middle_nodes(const Body& corners) {
-  Body body{.type = CellType::tet10, .rest = corners.rest, .nodes = {}};
-  std::map<std::pair<LocalIndex, LocalIndex>, LocalIndex> middles;
-  for (LocalIndex c = 0; c < corners.cells(); ++c) {
-    const auto cell = corners.cell(c);
-    body.nodes.insert(body.nodes.end(), cell.begin(), cell.end());
-    for (const auto& [a, b] :
-         {std::pair<std::size_t, std::size_t>{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}) {
-      const auto edge = std::minmax(cell[a], cell[b]);
-      const auto [middle, is_new] =
-          middles.try_emplace({edge.first, edge.second}, static_cast<LocalIndex>(body.rest.size()));
-      if (is_new)
-        body.rest.push_back(0.5 * (body.rest[static_cast<std::size_t>(cell[a])] +
-                                   body.rest[static_cast<std::size_t>(cell[b])]));
-      body.nodes.push_back(middle->second);
-    }
-  }
+  Mesh mesh{.nodes = corners.rest, .cells = {}, .regions = {"all"}, .node_sets = {}};
+  mesh.cells.push_back({CellType::tet4,
+                        {corners.nodes.begin(), corners.nodes.end()},
+                        std::vector<std::int32_t>(static_cast<std::size_t>(corners.cells()), 0)});
+  make_quadratic(mesh);
+  Body body{.type = CellType::tet10, .rest = mesh.nodes, .nodes = {}};
+  for (const GlobalIndex node : mesh.cells.front().nodes) body.nodes.push_back(static_cast<LocalIndex>(node));
   return body;
 }
 
@@ -237,6 +228,14 @@ inline NodalValues damping_product(const ElasticBlock& block, const NodalValues&
   block.add_damping(v.data(), out.data(), factor, block.interior());
   block.add_damping(v.data(), out.data(), factor, block.boundary());
   return out;
+}
+
+/// Both halves of the symmetric diagonal blocks of `nodes` nodes, one behind the other.
+inline NodalValues damping_diagonal(const ElasticBlock& block, std::size_t nodes) {
+  const std::size_t half = 3 * nodes + 1;
+  NodalValues blocks(2 * half, 0.0);
+  block.add_damping_diagonal(blocks.data(), blocks.data() + half, 1);
+  return blocks;
 }
 
 /// The largest entry, without the slack.

@@ -126,14 +126,8 @@ TEST(MixedPrecision, DampingIsNearThatInDouble) {
             << state.name;
         EXPECT_GE(product(v, found), 0) << state.name;
 
-        // Both halves of the symmetric blocks, one behind the other.
-        const auto diagonal_of = [&](const ElasticBlock& block) {
-          const std::size_t half = 3 * body.rest.size() + 1;
-          NodalValues blocks(2 * half, 0.0);
-          block.add_damping_diagonal(blocks.data(), blocks.data() + half, 1);
-          return blocks;
-        };
-        const NodalValues diagonal = diagonal_of(*mixed), expected_diagonal = diagonal_of(*full);
+        const NodalValues diagonal = damping_diagonal(*mixed, body.rest.size()),
+                          expected_diagonal = damping_diagonal(*full, body.rest.size());
         EXPECT_LE(largest_difference(diagonal, expected_diagonal),
                   1e-14 * floats * largest(expected_diagonal))
             << state.name;
