@@ -52,6 +52,10 @@ struct Dual {
     return {root, a.derivative / (root + root)};
   }
   friend Dual log(const Dual& a) { return {evert::log(a.value), a.derivative / a.value}; }
+  friend Dual exp(const Dual& a) {
+    const T power = evert::exp(a.value);
+    return {power, a.derivative * power};
+  }
   // clang-format on
 };
 

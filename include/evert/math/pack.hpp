@@ -256,7 +256,7 @@ EVERT_ALWAYS_INLINE T multiply_sign(const T& x, const std::type_identity_t<T>& s
   }
 }
 
-// --- powers of two and logarithm
+// --- powers of two, logarithm and exponential
 
 /// The largest power of two ≤ x, for positive normal x; NaN and ∞ give ∞.
 template <Real T>
@@ -355,6 +355,59 @@ EVERT_ALWAYS_INLINE T log(const T& x) {
     const T half_square = T(0.5) * f * f;
     const T low = s * (half_square + remainder) + exponent * T(Constants::ln2_low) + (x - x);
     return exponent * T(Constants::ln2_high) - ((half_square - low) - f);
+  }
+}
+
+namespace detail {
+
+/// Of exp: where it ends, and 1/k! as far as they are felt for |r| ≤ ln 2 / 2.
+template <class Scalar>
+struct ExpConstants;
+
+template <>
+struct ExpConstants<double> {
+  static constexpr double largest = 708, integers = 0x1.8p52;
+  static constexpr double taylor[] = {1.0,
+                                      1.0,
+                                      1.0 / 2,
+                                      1.0 / 6,
+                                      1.0 / 24,
+                                      1.0 / 120,
+                                      1.0 / 720,
+                                      1.0 / 5040,
+                                      1.0 / 40320,
+                                      1.0 / 362880,
+                                      1.0 / 3628800,
+                                      1.0 / 39916800,
+                                      1.0 / 479001600,
+                                      1.0 / 6227020800};
+};
+
+template <>
+struct ExpConstants<float> {
+  static constexpr float largest = 87, integers = 0x1.8p23F;
+  static constexpr float taylor[] = {1.0F,      1.0F,       1.0F / 2,   1.0F / 6,
+                                     1.0F / 24, 1.0F / 120, 1.0F / 720, 1.0F / 5040};
+};
+
+}  // namespace detail
+
+/// eˣ to about 2 ulp. NaN gives NaN; a pack stops at e^±708 (floats: e^±87), short of overflow.
+template <Real T>
+EVERT_ALWAYS_INLINE T exp(const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return std::exp(x);
+  } else {
+    using Scalar = scalar_t<T>;
+    using Constants = detail::ExpConstants<Scalar>;
+    using Logarithm = detail::LogConstants<Scalar>;
+    const T inside = max(min(x, T(Constants::largest)), T(-Constants::largest));
+    // x = n ln 2 + r. Added to `integers`, n stands in the last bits of the mantissa.
+    const T shifted = inside * T(Scalar(1.44269504088896340736L)) + T(Constants::integers);
+    const T n = shifted - T(Constants::integers);
+    const T r = (inside - n * T(Logarithm::ln2_high)) - n * T(Logarithm::ln2_low);
+    const T power = T::from_bits((shifted.bits() << Logarithm::mantissa_bits) + T(Scalar(1)).bits());
+    return detail::polynomial(Constants::taylor, r) * power;
   }
 }
 

@@ -30,6 +30,7 @@ enum class Operation {
   copy_sign,
   times_sign,
   logarithm,
+  exponential,
   power_of_two,
   broadcast,
   lane_sum_of_generated,

@@ -55,6 +55,8 @@ EVERT_ALWAYS_INLINE T apply(Operation operation, const T& x, const T& y) {
       return multiply_sign(x, y);
     case Operation::logarithm:
       return log(x);
+    case Operation::exponential:
+      return exp(x);
     case Operation::power_of_two:
       return floor_power_of_two(x);
     case Operation::broadcast:

@@ -22,6 +22,7 @@ TEST(Dual, FollowsTheRulesOfDifferentiation) {
   EXPECT_DOUBLE_EQ(slope([](D t) { return 1.0 / (t * t); }, x), -2 / (x * x * x));
   EXPECT_DOUBLE_EQ(slope([](D t) { return sqrt(t); }, x), 0.5 / std::sqrt(x));
   EXPECT_DOUBLE_EQ(slope([](D t) { return t * log(t); }, x), std::log(x) + 1);
+  EXPECT_DOUBLE_EQ(slope([](D t) { return exp(t * t); }, x), 2 * x * std::exp(x * x));
   EXPECT_DOUBLE_EQ(slope([](D t) { return -t; }, x), -1);
   EXPECT_DOUBLE_EQ(slope([](D t) { return abs(t); }, -x), -1);
   EXPECT_DOUBLE_EQ(slope([](D t) { return multiply_sign(t * t, t); }, -x), 2 * x);

@@ -66,8 +66,10 @@ TYPED_TEST(PackOf, AgreesWithTheScalarBitForBit) {
   for (const LevelKernels* level : runnable_levels()) {
     for (int o = 0; o < int(Operation::count); ++o) {
       const auto operation = Operation(o);
-      // Meaningful for positive normal numbers only, tested below.
-      if (operation == Operation::logarithm || operation == Operation::power_of_two) continue;
+      // Meaningful for positive normal numbers only, or not to the last bit: tested below.
+      if (operation == Operation::logarithm || operation == Operation::power_of_two ||
+          operation == Operation::exponential)
+        continue;
       run(*level, operation, x, y, result);
       for (std::size_t i = 0; i < x.size(); ++i) {
         ASSERT_TRUE(same(result[i], apply(operation, x[i], y[i])))
@@ -118,6 +120,46 @@ TYPED_TEST(PackOf, LogarithmKeepsNaN) {
     run(*level, Operation::logarithm, x, x, result);
     for (std::size_t i = 0; i < 16; ++i)
       EXPECT_EQ(std::isnan(result[i]), i == 3 || i == 4) << level->name << i;
+  }
+}
+
+TYPED_TEST(PackOf, ExponentialIsAccurateToTwoUlp) {
+  using Limits = std::numeric_limits<TypeParam>;
+  std::mt19937_64 random(13);
+  const TypeParam widest = sizeof(TypeParam) == 8 ? 708 : 87;
+  std::vector<TypeParam> x{0, -TypeParam(0), Limits::denorm_min(), Limits::min(), widest, -widest, 1, -1};
+  while (x.size() < 1 << 18) {
+    const TypeParam reach = x.size() % 2 == 0 ? TypeParam(0.5) : widest;
+    x.push_back(std::uniform_real_distribution<TypeParam>(-reach, reach)(random));
+  }
+  std::vector<TypeParam> result(x.size());
+  for (const LevelKernels* level : runnable_levels()) {
+    run(*level, Operation::exponential, x, x, result);
+    EXPECT_EQ(result[0], 1);
+    long double worst = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const long double exact = std::exp(static_cast<long double>(x[i]));
+      const auto rounded = static_cast<TypeParam>(exact);
+      const long double ulp = std::nextafter(rounded, infinity<TypeParam>) - rounded;
+      worst = std::max(worst, std::abs(result[i] - exact) / ulp);
+    }
+    EXPECT_LT(worst, 2.0L) << level->name;
+  }
+}
+
+TYPED_TEST(PackOf, ExponentialKeepsNaNAndStopsShortOfOverflow) {
+  std::vector<TypeParam> x(16, 0);
+  x[3] = nan<TypeParam>;
+  x[4] = infinity<TypeParam>;
+  x[5] = -infinity<TypeParam>;
+  x[6] = std::numeric_limits<TypeParam>::max();
+  std::vector<TypeParam> result(16);
+  for (const LevelKernels* level : runnable_levels()) {
+    run(*level, Operation::exponential, x, x, result);
+    EXPECT_TRUE(std::isnan(result[3])) << level->name;
+    EXPECT_TRUE(std::isfinite(result[4]) && result[4] > std::exp(TypeParam(80))) << level->name;
+    EXPECT_TRUE(result[5] > 0 && result[5] < std::exp(TypeParam(-80))) << level->name;
+    EXPECT_EQ(result[6], result[4]) << level->name;
   }
 }
 
