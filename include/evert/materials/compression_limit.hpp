@@ -23,4 +23,24 @@ EVERT_ALWAYS_INLINE Vec3<T> evaluated_stretches(const Vec3<T>& sigma, double lim
                            extension == Extension::clamp ? limit : -std::numeric_limits<double>::infinity());
 }
 
+/// How the limited stretches c = max(σ, limit) and the rest d = σ − c of two axes differ, per difference of
+/// σ.
+template <class T>
+struct PairSlopes {
+  T limited;  ///< (c_i − c_j)/(σ_i − σ_j): 1 above the limit, 0 below, in between where it lies between the
+              ///< two
+  T rest;  ///< (d_i − d_j)/(σ_i − σ_j); 0 with `clamp`, which evaluates at d = 0
+};
+
+/// Exact to rounding however near the two are, since nearby numbers are subtracted exactly.
+template <class T>
+EVERT_ALWAYS_INLINE PairSlopes<T> pair_slopes(const T& sigma_i, const T& sigma_j, double limit,
+                                              Extension extension) {
+  const T difference = sigma_i - sigma_j;
+  const auto apart = abs(difference) > T(0.0);
+  const T quotient = (max(sigma_i, T(limit)) - max(sigma_j, T(limit))) / select(apart, difference, T(1.0));
+  const T limited = select(apart, quotient, select(sigma_i < T(limit), T(0.0), T(1.0)));
+  return {limited, extension == Extension::clamp ? T(0.0) : T(1.0) - limited};
+}
+
 }  // namespace evert

@@ -12,6 +12,13 @@ struct Lame {
     return {youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)),
             youngs_modulus / (2 * (1 + poissons_ratio))};
   }
+
+  /// `shear_modulus` μ and `bulk_modulus` κ = λ + 2μ/3 [Pa].
+  static constexpr Lame from_shear_bulk(double shear_modulus, double bulk_modulus) {
+    return {bulk_modulus - 2.0 / 3 * shear_modulus, shear_modulus};
+  }
+
+  [[nodiscard]] constexpr double bulk_modulus() const { return lambda + 2.0 / 3 * mu; }
 };
 
 /// What a model does below its compression limit.  PHYSICS 3

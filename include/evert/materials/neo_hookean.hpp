@@ -71,6 +71,20 @@ struct NeoHookean {
     return {{{{diagonal(0), p01, p02}, {p01, diagonal(1), p12}, {p02, p12, diagonal(2)}}}};
   }
 
+  /// (P̂_i − P̂_j)/(σ_i − σ_j) [Pa] and its limit, of the pair without axis 0, 1, 2.
+  template <class T>
+  EVERT_ALWAYS_INLINE Vec3<T> shear_moduli(const Vec3<T>& sigma) const {
+    const Logarithms<T> at = logarithms(sigma);
+    const T mu = T(lame.mu);
+    const T pressure = T(lame.lambda) * at.volume_log - mu;
+    const auto pair = [&](std::size_t i, std::size_t j) {
+      const PairSlopes<T> slopes = pair_slopes(sigma[i], sigma[j], compression_limit, extension);
+      return mu * (slopes.limited + slopes.rest) - pressure * at.inverse[i] * at.inverse[j] * slopes.limited +
+             mu * T(1 / (compression_limit * compression_limit)) * slopes.rest;
+    };
+    return {pair(1, 2), pair(0, 2), pair(0, 1)};
+  }
+
  private:
   /// What every quantity is made of.
   template <class T>

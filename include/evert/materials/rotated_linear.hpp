@@ -38,6 +38,13 @@ struct RotatedLinear {
     return {{{{on, off, off}, {off, on, off}, {off, off, on}}}};
   }
 
+  /// (P̂_i − P̂_j)/(σ_i − σ_j) [Pa] and its limit, of the pair without axis 0, 1, 2.
+  template <class T>
+  EVERT_ALWAYS_INLINE Vec3<T> shear_moduli(const Vec3<T>& /*sigma*/) const {
+    const T shear = T(2 * lame.mu);
+    return {shear, shear, shear};
+  }
+
  private:
   template <class T>
   EVERT_ALWAYS_INLINE static Vec3<T> strains(const Vec3<T>& sigma) {

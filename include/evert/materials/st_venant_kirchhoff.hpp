@@ -56,6 +56,20 @@ struct StVenantKirchhoff {
     return {{{{diagonal(0), p01, p02}, {p01, diagonal(1), p12}, {p02, p12, diagonal(2)}}}};
   }
 
+  /// (P̂_i − P̂_j)/(σ_i − σ_j) [Pa] and its limit, of the pair without axis 0, 1, 2.
+  template <class T>
+  EVERT_ALWAYS_INLINE Vec3<T> shear_moduli(const Vec3<T>& sigma) const {
+    const Strains<T> at = strains(sigma);
+    const auto pair = [&](std::size_t i, std::size_t j) {
+      const PairSlopes<T> slopes = pair_slopes(sigma[i], sigma[j], compression_limit, extension);
+      const T mean = T(0.5) * (at.slope[i] + at.slope[j]);
+      const T strain_slope = mean * slopes.limited + T(compression_limit) * slopes.rest;
+      const T mean_stress = T(lame.mu) * (at.strain[i] + at.strain[j]) + T(lame.lambda) * at.trace;
+      return T(2 * lame.mu) * mean * strain_slope + mean_stress * slopes.limited;
+    };
+    return {pair(1, 2), pair(0, 2), pair(0, 1)};
+  }
+
  private:
   /// The Green strain of each axis.
   template <class T>

@@ -1,10 +1,10 @@
 #pragma once
 #include "evert/materials/lame.hpp"
+#include "evert/materials/pair_moduli.hpp"
 #include "evert/math/pack.hpp"
 #include "evert/math/vec3.hpp"
 
 #include <algorithm>
-#include <array>
 
 /// How stiff an isotropic material is at a point, against its own stiffness at rest.  PHYSICS 5 and 9
 ///
@@ -76,12 +76,6 @@ EVERT_ALWAYS_INLINE Mat3<T> relative_to_rest(const Mat3<T>& d, const Lame& lame)
   return relative;
 }
 
-/// Axes closer than this have the limit of the divided difference.
-template <class Scalar>
-inline constexpr Scalar equal_stretches = Scalar(1e-5);
-/// Here the rounding of the stresses, 1e-7 of the modulus, and the error of the limit are alike.
-template <>
-inline constexpr float equal_stretches<float> = 1e-3F;
 /// The inverted axis may switch where σ_i + σ_j = 0: the stress jumps there, and no step resolves it. The
 /// skew stiffness is not followed any closer.
 inline constexpr double smallest_stretch_sum = 0.2;
@@ -101,13 +95,11 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
   T stretching = max(largest_eigenvalue_bound(relative_to_rest(derivative, model.lame)), T(0.0));
   T skew = T(0.0);
   const T in_shear = T(1 / (2 * model.lame.mu));
-  for (const auto& [i, j] : std::array<std::array<std::size_t, 2>, 3>{{{0, 1}, {0, 2}, {1, 2}}}) {
-    const T difference = sigma[i] - sigma[j];
-    const auto equal = abs(difference) < T(equal_stretches<scalar_t<T>>);
-    const T limit = T(0.5) * (derivative(i, i) + derivative(j, j)) - derivative(i, j);
-    const T shear = select(equal, limit, (stress[i] - stress[j]) / select(equal, T(1.0), difference));
-    stretching = max(stretching, in_shear * shear);
-    skew = max(skew, in_shear * (stress[i] + stress[j]) / max(sigma[i] + sigma[j], T(smallest_stretch_sum)));
+  const Vec3<T> shear = shear_moduli(model, sigma, stress, derivative);
+  const Vec3<T> spins = spin_moduli(model, sigma, stress, smallest_stretch_sum);
+  for (std::size_t k = 0; k < 3; ++k) {
+    stretching = max(stretching, in_shear * shear[k]);
+    skew = max(skew, in_shear * spins[k]);
   }
   const double along_gradient = std::max(model.lame.lambda, 0.0) / (points == 1 ? 1 : 3);
   const T spin = T(2 * model.lame.mu / (2 * model.lame.mu + along_gradient)) * skew;
