@@ -5,6 +5,7 @@
 #include "evert/core/petsc.hpp"
 #include "evert/scene/build.hpp"
 #include "evert/scene/load.hpp"
+#include "evert/scene/material.hpp"
 #include "evert/scene/petsc_options.hpp"
 
 #include <petscsys.h>
@@ -36,10 +37,11 @@ std::string duration_text(double seconds) {
 }
 
 std::string material_text(const MaterialConfig& material) {
-  const char* model = material.model == MaterialModel::neo_hookean      ? "neo_hookean"
-                      : material.model == MaterialModel::rotated_linear ? "rotated_linear"
-                                                                        : "st_venant_kirchhoff";
-  return formatted("%s, E %g Pa, nu %g", model, material.youngs_modulus, material.poissons_ratio);
+  const auto model = name_of(material.model);
+  if (material.youngs_modulus)
+    return model + formatted(", E %g Pa, nu %g", *material.youngs_modulus, *material.poissons_ratio);
+  const Lame lame = lame_of(material);
+  return model + formatted(", lambda %g Pa, mu %g Pa", lame.lambda, lame.mu);
 }
 
 std::string damping_text(const std::optional<DampingConfig>& damping) {

@@ -54,13 +54,6 @@ const Table<StartConfig>& start_table() {
   return table;
 }
 
-void check_material(const MaterialConfig& material, const Value& map, const std::string& path) {
-  if (material.model != MaterialModel::rotated_linear) return;
-  for (const auto* key : {"compression_limit", "extension"})
-    if (const auto* value = map.find(key))
-      fail(*value, join(path, key), "does not go with 'model: rotated_linear', which needs no extension");
-}
-
 void check_damping(const DampingConfig& damping, const Value& map, const std::string& path) {
   const bool by_coefficients = map.find("alpha") != nullptr || map.find("beta") != nullptr;
   if (damping.model != DampingModel::none && damping.stiffness_proportional.has_value() == by_coefficients)
@@ -86,35 +79,6 @@ const Table<GroupConfig>& group_table() {
 }
 
 }  // namespace
-
-const Table<MaterialConfig>& material_table() {
-  static const auto table =
-      Table<MaterialConfig>("An isotropic elastic model.")
-          .required(
-              "model", &MaterialConfig::model,
-              one_of<MaterialModel>(
-                  {{"neo_hookean", MaterialModel::neo_hookean, "stiffens under compression; large strains"},
-                   {"rotated_linear", MaterialModel::rotated_linear, "linear in the stretches; fast, robust"},
-                   {"st_venant_kirchhoff", MaterialModel::st_venant_kirchhoff,
-                    "linear in Green's strain; softens under compression"}}),
-              "neo_hookean", "How stress follows from strain.")
-          .required("youngs_modulus", &MaterialConfig::youngs_modulus, number("Pa", at_least(0)), "1e5",
-                    "Stiffness. 0 is a body without elastic forces.")
-          .required("poissons_ratio", &MaterialConfig::poissons_ratio, number("-", between(-1, 0.5)), "0.45",
-                    "Lateral contraction over extension; towards 0.5 the volume is kept.")
-          .optional("compression_limit", &MaterialConfig::compression_limit, number("-", between(0, 1)),
-                    "0.3",
-                    "Principal stretch below which the model is extended through flat and inverted states; "
-                    "without it "
-                    "0.3 for neo_hookean, 0.58 for st_venant_kirchhoff.")
-          .optional("extension", &MaterialConfig::extension,
-                    one_of<Extension>(
-                        {{"linear", Extension::linear, "the energy is continued: exact gradient, uninverts"},
-                         {"clamp", Extension::clamp, "stress at the limit: for comparison"}}),
-                    "linear", "How the model continues below compression_limit.")
-          .then(check_material);
-  return table;
-}
 
 const Table<DampingConfig>& damping_table() {
   static const auto table =

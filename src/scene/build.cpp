@@ -3,6 +3,7 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/log.hpp"
 #include "evert/scene/load.hpp"
+#include "evert/scene/material.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,26 +12,10 @@
 namespace evert {
 namespace {
 
-Material material_of(const MaterialConfig& config) {
-  const auto lame = Lame::from_young_poisson(config.youngs_modulus, config.poissons_ratio);
-  switch (config.model) {
-    case MaterialModel::rotated_linear:
-      return RotatedLinear{lame};
-    case MaterialModel::st_venant_kirchhoff:
-      return StVenantKirchhoff{
-          lame, config.compression_limit.value_or(StVenantKirchhoff::default_compression_limit),
-          config.extension};
-    case MaterialModel::neo_hookean:
-      break;
-  }
-  return NeoHookean{lame, config.compression_limit.value_or(NeoHookean::default_compression_limit),
-                    config.extension};
-}
-
 Damping damping_of(const std::optional<DampingConfig>& config, const MaterialConfig& material) {
   if (!config) return {};
   if (!config->stiffness_proportional) return {config->model, config->alpha, config->beta};
-  const auto lame = Lame::from_young_poisson(material.youngs_modulus, material.poissons_ratio);
+  const auto lame = lame_of(material);
   return Damping::stiffness_proportional(config->model, *config->stiffness_proportional, lame.lambda,
                                          lame.mu);
 }

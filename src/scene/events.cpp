@@ -23,11 +23,11 @@ struct Settable {
 };
 
 void add_material(std::vector<Settable>& out, const Settable& place,
-                  const std::optional<DampingConfig>& damping, bool own_material) {
+                  const std::optional<DampingConfig>& damping, const MaterialConfig* material) {
   const auto add = [&](const char* key, EventTarget target) {
     out.push_back({join(place.path, key), target, place.owner, place.group});
   };
-  if (own_material) {
+  if (material != nullptr && material->youngs_modulus) {
     add("material.youngs_modulus", EventTarget::youngs_modulus);
     add("material.poissons_ratio", EventTarget::poissons_ratio);
   }
@@ -45,11 +45,11 @@ std::vector<Settable> settable_keys(const SceneConfig& scene) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
     const auto path = "bodies." + body.name;
-    add_material(out, {path, {}, b}, body.damping, true);
+    add_material(out, {path, {}, b}, body.damping, &body.material);
     for (std::size_t g = 0; g < body.groups.size(); ++g) {
       const auto& group = body.groups[g];
       add_material(out, {path + ".groups." + group.name, {}, b, g}, group.damping,
-                   group.material.has_value());
+                   group.material ? &*group.material : nullptr);
     }
   }
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
@@ -79,10 +79,10 @@ void read_value(EventConfig& event, const Value& root, const Value& to) {
       event.value = friction_type().read(to, event.set);
       break;
     case EventTarget::youngs_modulus:
-      event.value = material_table().read(map, parent).youngs_modulus;
+      event.value = *material_table().read(map, parent).youngs_modulus;
       break;
     case EventTarget::poissons_ratio:
-      event.value = material_table().read(map, parent).poissons_ratio;
+      event.value = *material_table().read(map, parent).poissons_ratio;
       break;
     case EventTarget::stiffness_proportional:
       event.value = *damping_table().read(map, parent).stiffness_proportional;

@@ -1,14 +1,15 @@
 #pragma once
 #include "evert/core/schema.hpp"
 #include "evert/scene/config.hpp"
+#include "evert/scene/material.hpp"
 
-/// The option tables of a scene, one a struct of scene/config.hpp, and the types that only they use.
+/// The option tables of a scene, one a struct of scene/config.hpp (that of materials: scene/material.hpp),
+/// and the types that only they use.
 namespace evert {
 
 [[nodiscard]] const schema::Table<SceneConfig>& scene_table();
 [[nodiscard]] const schema::Table<MeshConfig>& mesh_table();
 [[nodiscard]] const schema::Table<BodyConfig>& body_table();
-[[nodiscard]] const schema::Table<MaterialConfig>& material_table();
 [[nodiscard]] const schema::Table<DampingConfig>& damping_table();
 [[nodiscard]] const schema::Table<ObstacleConfig>& obstacle_table();
 [[nodiscard]] const schema::Table<ConstraintConfig>& constraint_table();

@@ -67,7 +67,8 @@ TEST_P(ElasticModels, AreOfSecondOrderInTheStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ElasticModels,
-                         testing::Values("neo_hookean", "rotated_linear", "st_venant_kirchhoff"));
+                         testing::Values("neo_hookean", "rotated_linear", "st_venant_kirchhoff",
+                                         "mooney_rivlin", "spline", "stable_neo_hookean"));
 
 TEST(Damping, IsOfSecondOrderAndOnlyTakesEnergy) {
   const std::vector<std::string> damped{

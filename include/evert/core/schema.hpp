@@ -42,6 +42,8 @@ struct Range {
 [[nodiscard]] inline Range between(double low, double high) {
   return {.low = low, .high = high, .low_open = true, .high_open = true};
 }
+/// The closed interval.
+[[nodiscard]] inline Range from_to(double low, double high) { return {.low = low, .high = high}; }
 /// low < value <= high.
 [[nodiscard]] inline Range above_up_to(double low, double high) {
   return {.low = low, .high = high, .low_open = true};

@@ -94,13 +94,31 @@ struct StartConfig {
   std::uint64_t seed = 1;  ///< of scramble; the target of a node depends on the seed and its number only
 };
 
-enum class MaterialModel { neo_hookean, rotated_linear, st_venant_kirchhoff };
+enum class MaterialModel {
+  neo_hookean,
+  rotated_linear,
+  st_venant_kirchhoff,
+  mooney_rivlin,
+  spline,
+  stable_neo_hookean
+};
 
+/// Moduli in exactly one way: (E, ν), (λ, μ), or with mooney_rivlin (μ10, μ01, κ). What is empty of the rest
+/// is the model's own default, or does not go with the model.
 struct MaterialConfig {
   MaterialModel model = MaterialModel::neo_hookean;
-  double youngs_modulus = 0;                ///< [Pa] ≥ 0
-  double poissons_ratio = 0;                ///< [-] in (−1, 0.5)
-  std::optional<double> compression_limit;  ///< [-] in (0, 1); empty: the model's own
+  std::optional<double> youngs_modulus;          ///< [Pa] ≥ 0
+  std::optional<double> poissons_ratio;          ///< [-] in (−1, 0.5)
+  std::optional<double> lambda;                  ///< [Pa] > −2μ/3
+  std::optional<double> mu;                      ///< [Pa] > 0
+  std::optional<double> mu_10;                   ///< [Pa] ≥ 0
+  std::optional<double> mu_01;                   ///< [Pa] ≥ 0, not 0 with mu_10
+  std::optional<double> bulk_modulus;            ///< [Pa] > 0
+  std::optional<double> mu_01_share;             ///< [-] in [0, 1]
+  std::optional<double> compression_limit;       ///< [-] in (0, 1); in [0, 1] for spline
+  std::optional<double> elongation_limit;        ///< [-] ≥ 1
+  std::optional<double> compression_stiffening;  ///< [-] > 0
+  std::optional<double> elongation_stiffening;   ///< [-] > 0
   Extension extension = Extension::linear;
 };
 

@@ -171,9 +171,15 @@ inline constexpr Lame soft = Lame::from_young_poisson(1e4, 0.4);
 
 /// Every model with each of its extensions.
 inline std::vector<Material> all_materials(const Lame& lame = soft) {
-  return {RotatedLinear{.lame = lame}, NeoHookean{.lame = lame},
-          NeoHookean{.lame = lame, .extension = Extension::clamp}, StVenantKirchhoff{.lame = lame},
-          StVenantKirchhoff{.lame = lame, .extension = Extension::clamp}};
+  return {RotatedLinear{.lame = lame},
+          NeoHookean{.lame = lame},
+          NeoHookean{.lame = lame, .extension = Extension::clamp},
+          StVenantKirchhoff{.lame = lame},
+          StVenantKirchhoff{.lame = lame, .extension = Extension::clamp},
+          MooneyRivlin{.lame = lame},
+          MooneyRivlin{.lame = lame, .extension = Extension::clamp},
+          Spline{.lame = lame},
+          StableNeoHookean{.lame = lame}};
 }
 
 inline std::string name_of(const Material& material) {

@@ -77,8 +77,7 @@ TEST(ElasticForces, AreTheGradientOfTheEnergy) {
 TEST(ElasticForces, OfASquashedBlockAreExactToRounding) {
   const Body body = box(CellType::tet4, 12, 12, 10, 0.1, 0.0);
   ASSERT_EQ(body.cells(), 8640);
-  for (const Material& material : {Material{RotatedLinear{.lame = soft}}, Material{NeoHookean{.lame = soft}},
-                                   Material{StVenantKirchhoff{.lame = soft}}}) {
+  for (const Material& material : all_materials()) {
     const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
     // At rest there is no force to be relative to.
     const double at_nine_tenths = largest(forces(*block, deformed(body, [](const Vec3d& p) {

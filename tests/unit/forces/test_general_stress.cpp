@@ -68,6 +68,7 @@ TEST(GeneralStress, IsTakenByWhatAModelOffers) {
   static_assert(!kernels::NeedsFrames<NeoHookean>);
   static_assert(!kernels::NeedsFrames<RotatedLinear>);
   static_assert(!kernels::NeedsFrames<StVenantKirchhoff>);
+  static_assert(!kernels::NeedsFrames<MooneyRivlin>);
 }
 
 TEST(GeneralStress, OfAnIsotropicModelIsThatOfTheShortPath) {
@@ -88,6 +89,9 @@ TEST(GeneralStress, OfAnIsotropicModelIsThatOfTheShortPath) {
     compare(NeoHookean{.lame = soft});
     compare(RotatedLinear{.lame = soft});
     compare(StVenantKirchhoff{.lame = soft});
+    compare(MooneyRivlin{.lame = soft});
+    compare(Spline{.lame = soft});
+    compare(StableNeoHookean{.lame = soft});
   });
 }
 

@@ -127,8 +127,8 @@ const std::vector<Mistake> mistakes{
     // words
     {"unknown_model", "model: neo_hookean", "model: neohookean",
      "scene.yaml:18: bodies.torus.material.model: 'neohookean' is not allowed: must be neo_hookean, "
-     "rotated_linear or "
-     "st_venant_kirchhoff (did you mean 'neo_hookean'?)"},
+     "rotated_linear, st_venant_kirchhoff, mooney_rivlin, spline or stable_neo_hookean (did you mean "
+     "'neo_hookean'?)"},
     {"unknown_shape", "shape: sphere", "shape: cube",
      "scene.yaml:36: obstacles.ball.shape: 'cube' is not allowed: must be half_space or sphere"},
     {"unknown_generator", "generate: torus", "generate: tours",
@@ -140,8 +140,8 @@ const std::vector<Mistake> mistakes{
      "rank (did you "
      "mean 'rank'?)"},
     {"list_for_word", "model: neo_hookean", "model: [neo_hookean]",
-     "scene.yaml:18: bodies.torus.material.model: must be neo_hookean, rotated_linear or "
-     "st_venant_kirchhoff, not a list"},
+     "scene.yaml:18: bodies.torus.material.model: must be neo_hookean, rotated_linear, "
+     "st_venant_kirchhoff, mooney_rivlin, spline or stable_neo_hookean, not a list"},
     // several keys together
     {"no_shape", "{shape: sphere, ", "{",
      "scene.yaml:36: obstacles.ball: needs one of 'shape: half_space or shape: sphere'"},
@@ -171,9 +171,48 @@ const std::vector<Mistake> mistakes{
      "scene.yaml:23: bodies.torus.damping: needs either 'stiffness_proportional' [s] or 'alpha' and 'beta' "
      "[Pa s]"},
     {"limit_without_extension", "model: neo_hookean", "model: rotated_linear",
-     "scene.yaml:21: bodies.torus.material.compression_limit: does not go with 'model: rotated_linear', "
-     "which needs no "
-     "extension"},
+     "scene.yaml:21: bodies.torus.material.compression_limit: does not go with 'model: rotated_linear', only "
+     "with neo_hookean, st_venant_kirchhoff, mooney_rivlin or spline"},
+    {"constant_of_another_model", "compression_limit: 0.3", "mu_01_share: 0.3",
+     "scene.yaml:21: bodies.torus.material.mu_01_share: does not go with 'model: neo_hookean', only with "
+     "mooney_rivlin"},
+    {"elongation_of_another_model", "compression_limit: 0.3", "elongation_limit: 2",
+     "scene.yaml:21: bodies.torus.material.elongation_limit: does not go with 'model: neo_hookean', only "
+     "with "
+     "spline"},
+    {"moduli_in_two_ways", "compression_limit: 0.3", "mu: 1e5",
+     "scene.yaml:18: bodies.torus.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
+     "'lambda' and 'mu' [Pa]"},
+    {"half_of_the_moduli", "      poissons_ratio: 0.45\n", "",
+     "scene.yaml:18: bodies.torus.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
+     "'lambda' and 'mu' [Pa]"},
+    {"no_moduli_of_rubber", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
+     "{model: mooney_rivlin, mu_10: 1, mu_01: 1}",
+     "scene.yaml:32: bodies.box.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
+     "'lambda' and 'mu' [Pa], or 'mu_10', 'mu_01' and 'bulk_modulus' [Pa]"},
+    {"rubber_without_shape", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
+     "{model: mooney_rivlin, mu_10: 0, mu_01: 0, bulk_modulus: 1}",
+     "scene.yaml:32: bodies.box.material.mu_10: '0' is not allowed: mu_10 and mu_01 must not both be 0"},
+    {"share_said_twice", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
+     "{model: mooney_rivlin, mu_10: 1, mu_01: 0, bulk_modulus: 1, mu_01_share: 0.5}",
+     "scene.yaml:32: bodies.box.material.mu_01_share: '0.5' is not allowed: mu_01 says it already"},
+    {"auxetic_beyond", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
+     "{model: rotated_linear, lambda: -2, mu: 3}",
+     "scene.yaml:32: bodies.box.material.lambda: '-2' is not allowed: must be > -2/3 mu, or compression "
+     "meets "
+     "no resistance"},
+    {"limit_at_the_end", "compression_limit: 0.3", "compression_limit: 0",
+     "scene.yaml:21: bodies.torus.material.compression_limit: '0' is not allowed: must be in (0, 1) with "
+     "'model: neo_hookean'"},
+    {"limit_outside", "compression_limit: 0.3", "compression_limit: 1.5",
+     "scene.yaml:21: bodies.torus.material.compression_limit: '1.5' is not allowed: must be in [0, 1]"},
+    {"limits_in_wrong_order", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
+     "{model: spline, youngs_modulus: 1, poissons_ratio: 0, compression_limit: 0.8, elongation_limit: 0.7}",
+     "scene.yaml:32: bodies.box.material.elongation_limit: '0.7' is not allowed: must be >= 1"},
+    {"extension_of_a_spline", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
+     "{model: spline, youngs_modulus: 1, poissons_ratio: 0, extension: linear}",
+     "scene.yaml:32: bodies.box.material.extension: does not go with 'model: spline', only with neo_hookean, "
+     "st_venant_kirchhoff or mooney_rivlin"},
     {"no_direction", "normal: [0, 2, 0]", "normal: [0, 0, 0]",
      "scene.yaml:35: obstacles.ground.normal: must not be [0, 0, 0]: it is a direction"},
     {"point_and_offset", "point: [0, -1, 0]", "point: [0, -1, 0], offset: 1",
