@@ -113,6 +113,7 @@ std::string usage() {
   evert view RUN.h5          make a web page that plays a run
   evert explain [KEY]        say what a key of a scene means, or list all
   evert mesh COMMAND ...     generate, convert, judge or partition a mesh
+  evert material MODEL ...   print or draw the stress of a material, and check it against another code
   evert bench COMMAND ...    measure kernels and steps on this machine
   evert COMMAND --help       the options of a command
   evert --version

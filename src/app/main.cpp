@@ -3,6 +3,7 @@
 #include "evert/app/check_command.hpp"
 #include "evert/app/command_line.hpp"
 #include "evert/app/explain_command.hpp"
+#include "evert/app/material_command.hpp"
 #include "evert/app/mesh_command.hpp"
 #include "evert/app/run_command.hpp"
 #include "evert/app/view_command.hpp"
@@ -50,6 +51,7 @@ int dispatch(const std::string& command, const Arguments& arguments) {
   const std::map<std::string, SerialCommand> serial{
       {"check", [](const Arguments& rest) { return evert::check_command(rest, std::cout); }},
       {"explain", [](const Arguments& rest) { return evert::explain_command(rest, std::cout); }},
+      {"material", [](const Arguments& rest) { return evert::material_command(rest, std::cout); }},
       {"mesh", [](const Arguments& rest) { return evert::mesh_command(rest, std::cout); }},
       {"view", [](const Arguments& rest) { return evert::view_command(rest, std::cout); }},
   };
