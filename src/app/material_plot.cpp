@@ -18,7 +18,7 @@ std::string formatted(const char* format, Values... values) {
 }
 
 constexpr std::array colours{"#2d6ca8", "#c8362b", "#3f8f5b", "#8a5fb0"};
-constexpr int points = 400;
+constexpr int points = 200;
 constexpr double panel_width = 330, panel_height = 250, left = 48, right = 10, top = 26, bottom = 36;
 constexpr double legend_height = 62;
 

@@ -2,6 +2,8 @@
 
 #include "case.hpp"
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 /// What the program says to wrong input. One entry a case: to add one, copy the nearest and change it. What
 /// an entry leaves out is the default of case.hpp: `evert run scene.yaml`, exit code 2, at 1 and 3 ranks.
@@ -157,6 +159,102 @@ const std::vector<Case> views{
     bad_view("view_without_frames", "out/run.h5 -frames 0", {"-frames", "at least 1", "'0'"}),
     bad_view("view_unknown_option", "out/run.h5 -frame 3", {"-frame", "did you mean '-frames'?"}),
     bad_view("view_unwritable", "out/run.h5 -o scene.yaml/view.html", {"scene.yaml/view.html"}),
+};
+
+/// `evert material`, which needs one rank only.
+Case good_material(const std::string& name, const std::string& arguments,
+                   const std::vector<std::string>& says, const std::vector<File>& files = {},
+                   const std::function<void(const fs::path& place)>& inspect = {}) {
+  return {.name = name,
+          .command = "material " + arguments,
+          .files = files,
+          .exit_code = 0,
+          .says = says,
+          .ranks = {1},
+          .inspect = inspect};
+}
+
+Case bad_material(const std::string& name, const std::string& arguments, const std::vector<std::string>& says,
+                  const std::vector<File>& files = {}) {
+  return {.name = name, .command = "material " + arguments, .files = files, .says = says, .ranks = {1}};
+}
+
+const File gradients{"f.txt",
+                     "# at rest, stretched and turned by 90 degrees, inverted\n"
+                     "1 0 0 0 1 0 0 0 1\n\n0,-1,0,2,0,0,0,0,1  # commas\n+1 0 0 0 1 0 0 0 -1\n"};
+
+/// λ = 4, μ = 6 of rotated_linear: P = R (2μ (S − 1) + λ tr(S − 1)).
+void expect_stresses(const fs::path& place) {
+  std::ifstream file(place / "p.csv");
+  std::vector<std::string> rows;
+  for (std::string row; std::getline(file, row);) rows.push_back(row);
+  ASSERT_EQ(rows.size(), 4);
+  EXPECT_TRUE(rows[0].starts_with("sigma_1,sigma_2,sigma_3,P_11 [Pa],P_12 [Pa]"));
+  const std::vector<std::vector<double>> expected{{1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
+                                                  {2, 1, 1, 0, -4, 0, 16, 0, 0, 0, 0, 4, 8},
+                                                  {1, 1, -1, -8, 0, 0, 0, -8, 0, 0, 0, -32, 32}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::istringstream numbers(rows[i + 1]);
+    std::string number;
+    for (const double value : expected[i]) {
+      ASSERT_TRUE(std::getline(numbers, number, ','));
+      EXPECT_NEAR(std::stod(number), value, 1e-14) << rows[i + 1];
+    }
+  }
+}
+
+void expect_plot(const fs::path& place) {
+  std::ifstream file(place / "all.svg");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_TRUE(text.starts_with("<svg") && text.ends_with("</svg>\n"));
+  EXPECT_NE(text.find("stable_neo_hookean"), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+const std::vector<Case> materials{
+    good_material("material_help", "--help", {"-gradients", "-mu_01_share", "mooney_rivlin"}),
+    good_material("material_table", "rotated_linear -lambda 4 -mu 6 -path uniaxial -from -1 -to 1 -points 3",
+                  {"lambda 4 Pa, mu 6 Pa", "uniaxial: principal stretches (s, 1, 1)",
+                   "-1             -32               0              -8"}),
+    good_material("material_all_paths", "mooney_rivlin", {"biaxial", "volumetric", "shear"}),
+    good_material("material_plot", "all -plot all.svg", {"wrote all.svg"}, {}, expect_plot),
+    good_material("material_gradients", "rotated_linear -lambda 4 -mu 6 -gradients f.txt -o p.csv",
+                  {"wrote p.csv: 3 stresses"}, {gradients}, expect_stresses),
+    good_material("material_gradients_to_the_screen", "spline -gradients f.txt", {"sigma_1", "1,1,1,0,"},
+                  {gradients}),
+    bad_material("material_nothing", "", {"evert material needs a model: neo_hookean"}),
+    bad_material("material_unknown", "neohookean", {"model", "did you mean 'neo_hookean'?"}),
+    bad_material("material_unknown_option", "spline -elongation_limt 2",
+                 {"did you mean '-elongation_limit'?"}),
+    bad_material("material_incompressible", "neo_hookean -poissons_ratio 0.5",
+                 {"evert material: poissons_ratio", "(-1, 0.5)"}),
+    bad_material("material_of_another_model", "neo_hookean -elongation_limit 2",
+                 {"elongation_limit", "only with spline"}),
+    bad_material("material_limits_in_wrong_order", "spline -compression_limit 0.9 -elongation_limit 0.8",
+                 {"elongation_limit", ">= 1"}),
+    bad_material("material_in_two_ways", "neo_hookean -youngs_modulus 1 -mu 1", {"needs either"}),
+    bad_material("material_odd_number", "neo_hookean -youngs_modulus stiff", {"youngs_modulus", "'stiff'"}),
+    bad_material("material_unknown_path", "neo_hookean -path uniaxal", {"did you mean 'uniaxial'?"}),
+    bad_material("material_empty_range", "neo_hookean -from 1 -to 1", {"-from must be less than -to"}),
+    bad_material("material_one_point", "neo_hookean -points 1", {"-points must be from 2"}),
+    bad_material("material_all_without_plot", "all", {"'all' goes with -plot only"}),
+    bad_material("material_plot_of_gradients", "spline -plot a.svg -gradients f.txt", {"exclude each other"},
+                 {gradients}),
+    bad_material("material_output_of_nothing", "spline -o p.csv", {"-o goes with -gradients only"}),
+    bad_material("material_plot_to_nowhere", "spline -plot /proc/a.svg", {"/proc/a.svg"}),
+    bad_material("material_no_gradients", "spline -gradients f.txt", {"f.txt: there is no such file"}),
+    bad_material("material_gradients_is_directory", "spline -gradients f.txt", {"f.txt: is a directory"},
+                 {{"f.txt/"}}),
+    bad_material("material_empty_gradients", "spline -gradients f.txt", {"holds no deformation gradient"},
+                 {{"f.txt", "# nothing\n"}}),
+    bad_material("material_eight_numbers", "spline -gradients f.txt", {"f.txt:2: holds 8 numbers", "has 9"},
+                 {{"f.txt", "1 0 0 0 1 0 0 0 1\n1 0 0 0 1 0 0 0\n"}}),
+    bad_material("material_gradient_of_words", "spline -gradients f.txt", {"f.txt:1: '1.0e' is no finite"},
+                 {{"f.txt", "1.0e 0 0 0 1 0 0 0 1\n"}}),
+    bad_material("material_gradient_not_finite", "spline -gradients f.txt", {"'nan' is no finite number"},
+                 {{"f.txt", "nan 0 0 0 1 0 0 0 1\n"}}),
+    bad_material("material_gradient_too_large", "spline -gradients f.txt", {"'1e999' does not fit"},
+                 {{"f.txt", "1e999 0 0 0 1 0 0 0 1\n"}}),
 };
 
 const std::vector<Case> bad_commands{
@@ -477,8 +575,8 @@ std::vector<Case> cut_meshes() {
 const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
-    for (const auto& group : {good_runs, views, bad_commands, bad_scenes, bad_meshes, cut_meshes(), failures,
-                              bad_output, bad_restarts})
+    for (const auto& group : {good_runs, views, materials, bad_commands, bad_scenes, bad_meshes, cut_meshes(),
+                              failures, bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

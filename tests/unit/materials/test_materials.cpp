@@ -1,3 +1,4 @@
+#include "evert/materials/pair_moduli.hpp"
 #include "evert/math/dual.hpp"
 #include "evert/math/pack.hpp"
 
@@ -148,6 +149,63 @@ TYPED_TEST(Materials, UniaxialStressActsToUninvert) {
     const double stress = model.principal_stress(Vec3d{1, 1, stretch})[2];
     EXPECT_LT(stress, above) << stretch;
     above = stress;
+  }
+}
+
+/// ∂P̂_3/∂σ_3 > 0 from the limit down to −2, other stretches in [0.2, 3].
+TYPED_TEST(Materials, StiffnessBelowTheLimitIsPositive) {
+  const auto model = make<TypeParam>();
+  for (double a = 0.2; a < 3.05; a += 0.1)
+    for (double b = 0.2; b < 3.05; b += 0.1)
+      for (double stretch = limit_of(model) - 1e-9; stretch > -2; stretch -= 0.05)
+        EXPECT_GT(model.stress_derivative(Vec3d{a, b, stretch})(2, 2), 0) << a << ' ' << b << ' ' << stretch;
+}
+
+/// How far an element can be stretched along the two other axes and still be pressed out of the flat state:
+/// as far as docs/materials.md says. The size of λ decides, so for several ν.
+template <class Model>
+bool presses_flat_outwards(const Model& model, double a, double b) {
+  return model.principal_stress(Vec3d{a, b, 0.0})[2] < 0;
+}
+bool is_pressed_as_documented(const RotatedLinear& model, double a, double b) {
+  return model.lame.lambda * (a + b - 2) < 2 * model.lame.mu + model.lame.lambda;
+}
+bool is_pressed_as_documented(const Spline& model, double a, double b) {
+  const double at_flat = 0.5 * (1 + (model.compression_stiffening - 1) / 3) +
+                         0.5 * model.compression_stiffening;  // |D(−1)|, limit at ½
+  return model.lame.lambda * (a + b - 2) < 2 * model.lame.mu * at_flat + model.lame.lambda;
+}
+bool is_pressed_as_documented(const StVenantKirchhoff& model, double a, double b) {
+  const double square = model.compression_limit * model.compression_limit;
+  return model.lame.lambda * (a * a + b * b - 2) < (2 * model.lame.mu + model.lame.lambda) * (1 + square);
+}
+template <class Model>
+bool is_pressed_as_documented(const Model& /*model*/, double /*a*/, double /*b*/) {
+  return true;
+}
+
+TYPED_TEST(Materials, PressFlatElementsOutwardsAsFarAsDocumented) {
+  auto model = make<TypeParam>();
+  for (const double nu : {-0.5, 0.0, 0.3, 0.45, 0.49}) {
+    model.lame = Lame::from_young_poisson(1, nu);
+    for (double a = 0.203; a < 3; a += 0.1)
+      for (double b = 0.203; b < 3; b += 0.1)
+        EXPECT_EQ(presses_flat_outwards(model, a, b), is_pressed_as_documented(model, a, b))
+            << nu << ' ' << a << ' ' << b;
+  }
+}
+
+/// Only the model that is smooth in F does not feel that it has no extent left across two or three axes.
+TYPED_TEST(Materials, PressOutwardsWhenCollapsed) {
+  const auto model = make<TypeParam>();
+  const Vec3d at_point = model.principal_stress(Vec3d{0, 0, 0});
+  const Vec3d at_line = model.principal_stress(Vec3d{1, 0, 0});
+  if constexpr (HasSpinModuli<TypeParam>) {
+    EXPECT_EQ(norm(at_point), 0);
+    EXPECT_EQ(std::abs(at_line[1]) + std::abs(at_line[2]), 0);
+  } else {
+    for (int i = 0; i < 3; ++i) EXPECT_LT(at_point[i], -0.1 * model.lame.mu);
+    for (int i = 1; i < 3; ++i) EXPECT_LT(at_line[i], -0.1 * model.lame.mu);
   }
 }
 

@@ -80,7 +80,8 @@ obstacles:
 
 /// Lays `top` over `base`; keys that choose among alternatives replace the whole map.
 YAML::Node laid_over(const YAML::Node& base, const YAML::Node& top) {
-  if (!base.IsMap() || !top.IsMap() || top["generate"] || top["file"] || top["shape"] || top["alpha"])
+  if (!base.IsMap() || !top.IsMap() || top["generate"] || top["file"] || top["shape"] || top["alpha"] ||
+      top["mu"] || top["mu_10"])
     return YAML::Clone(top);
   auto out = YAML::Clone(base);
   for (const auto& entry : top) {
