@@ -176,8 +176,22 @@ bool is_pressed_as_documented(const Spline& model, double a, double b) {
   return model.lame.lambda * (a + b - 2) < 2 * model.lame.mu * at_flat + model.lame.lambda;
 }
 bool is_pressed_as_documented(const StVenantKirchhoff& model, double a, double b) {
-  const double square = model.compression_limit * model.compression_limit;
-  return model.lame.lambda * (a * a + b * b - 2) < (2 * model.lame.mu + model.lame.lambda) * (1 + square);
+  const double limit = model.compression_limit;
+  const auto strain = [&](double stretch) {  // continued linearly
+    const double c = std::max(stretch, limit);
+    return 0.5 * (c * c - 1) + c * (stretch - c);
+  };
+  return model.lame.lambda * (strain(a) + strain(b)) <
+         (model.lame.mu + 0.5 * model.lame.lambda) * (1 + limit * limit);
+}
+bool is_pressed_as_documented(const NeoHookean& model, double a, double b) {
+  const auto logarithm = [&](double stretch) {  // continued linearly
+    const double c = std::max(stretch, model.compression_limit);
+    return std::log(c) + stretch / c - 1;
+  };
+  const bool pressed = model.lame.lambda * (logarithm(a) + logarithm(b) + logarithm(0)) < 2 * model.lame.mu;
+  EXPECT_TRUE(pressed || model.lame.lambda < 0);
+  return pressed;
 }
 template <class Model>
 bool is_pressed_as_documented(const Model& /*model*/, double /*a*/, double /*b*/) {

@@ -181,10 +181,10 @@ const std::vector<Mistake> mistakes{
      "with "
      "spline"},
     {"moduli_in_two_ways", "compression_limit: 0.3", "mu: 1e5",
-     "scene.yaml:18: bodies.torus.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
+     "scene.yaml:17: bodies.torus.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
      "'lambda' and 'mu' [Pa]"},
     {"half_of_the_moduli", "      poissons_ratio: 0.45\n", "",
-     "scene.yaml:18: bodies.torus.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
+     "scene.yaml:17: bodies.torus.material: needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or "
      "'lambda' and 'mu' [Pa]"},
     {"no_moduli_of_rubber", "{model: rotated_linear, youngs_modulus: 0, poissons_ratio: 0}",
      "{model: mooney_rivlin, mu_10: 1, mu_01: 1}",
