@@ -41,17 +41,12 @@ class CellList {
   throw UserError(message.str());
 }
 
-/// Vectors kept per point.
-std::size_t shape_vectors(ShapeData kind, int nodes) {
-  return kind == ShapeData::inverse_jacobian ? 3 : static_cast<std::size_t>(nodes) - 1;
-}
-
 /// Writes the numbers of one cell into its lane of a block.
 template <int nodes, int points>
 class LaneWriter {
  public:
   LaneWriter(const ReferenceElement<nodes, points>& element, ElementBlock& block)
-      : element_(element), block_(block) {}
+      : element_(element), block_(block), layout_(rest_layout(block.shape_data, nodes, points)) {}
 
   void write_nodes(std::size_t slot, std::span<const LocalIndex> cell) {
     for (std::size_t a = 0; a < nodes; ++a) block_.nodes[at(slot, nodes, a)] = cell[a];
@@ -62,22 +57,19 @@ class LaneWriter {
     for (std::size_t q = 0; q < points; ++q) {
       const Mat3d jacobian = rest_jacobian(element_, q, cell, rest_positions);
       block_.volumes.set(at(slot, points, q), element_.weights[q] * determinant(jacobian));
-      const Mat3d inverse_jacobian = inverse(jacobian);
-      if (block_.shape_data == ShapeData::inverse_jacobian) {
-        for (std::size_t j = 0; j < 3; ++j) write_shape(slot, q, j, inverse_jacobian.column[j]);
-      } else {
-        for (std::size_t a = 1; a < nodes; ++a)
-          write_shape(slot, q, a - 1, transpose_times(inverse_jacobian, element_.gradients[q][a]));
-      }
+      const RestVectors<nodes, points> vectors{block_.shape_data, element_, q, inverse(jacobian)};
+      const Mat3d frame = vectors.frame();
+      for (std::size_t j = 0; j < layout_.vectors; ++j)
+        write_shape(slot, q, j, transpose_times(frame, vectors[j]));
     }
   }
 
  private:
   /// Vector number `j` of point `q`.
   void write_shape(std::size_t slot, std::size_t q, std::size_t j, const Vec3d& vector) {
-    const std::size_t per_point = shape_vectors(block_.shape_data, nodes);
-    for (std::size_t i = 0; i < 3; ++i)
-      block_.shapes.set(at(slot, 3 * points * per_point, 3 * (q * per_point + j) + i), vector[i]);
+    const std::size_t begin = q * layout_.numbers() + layout_.begin(j);
+    for (std::size_t i = 0; i < layout_.components(j); ++i)
+      block_.shapes.set(at(slot, points * layout_.numbers(), begin + i), vector[i]);
   }
 
   /// Position of number `i` of the `count` a cell has, in an array [batch][count][lane].
@@ -88,6 +80,7 @@ class LaneWriter {
 
   const ReferenceElement<nodes, points>& element_;
   ElementBlock& block_;
+  ShapeLayout layout_;
 };
 
 /// Cells in the order of their lanes, −1 for padding: each of the two sets fills whole batches.
@@ -146,7 +139,8 @@ ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes
 
         const std::size_t slots = block.cell_of_lane.size();
         block.nodes.resize(slots * node_total);
-        block.shapes = {precision, slots * point_total * 3 * shape_vectors(shape_data, node_total)};
+        block.shapes = {precision,
+                        slots * point_total * rest_layout(shape_data, node_total, point_total).numbers()};
         block.volumes = {precision, slots * point_total};
         LaneWriter writer(element, block);
         for (std::size_t slot = 0; slot < slots; ++slot) {

@@ -99,7 +99,8 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
   const auto add_points = [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
     for (std::size_t q = 0; q < points; ++q) {
       if (kernels_.rotated_gradients) {  // V is in the h_a already
-        const auto h = read_gradients(element, element_block_.shape_data, state, q);
+        const ShapeLayout full{.vectors = rest_layout(element_block_.shape_data, nodes, points).vectors};
+        const auto h = read_gradients(element, element_block_.shape_data, full, state, q);
         DampingPoint<nodes>{h, identity<double>(), 1}.add_to(matrix, damping_);
       } else {
         const auto rest = rest_point(element, element_block_, slot, q);

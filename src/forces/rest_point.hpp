@@ -18,12 +18,17 @@ class LaneNumbers {
       : numbers_(numbers), first_(slot / lanes * lanes * per_lane + slot % lanes), lanes_(lanes) {}
 
   [[nodiscard]] double number(std::size_t i) const { return numbers_[first_ + i * lanes_]; }
-  /// The i-th of its vectors, and of its matrices by columns.
-  [[nodiscard]] Vec3d vector(std::size_t i) const {
-    return {number(3 * i), number(3 * i + 1), number(3 * i + 2)};
+  /// Vector number `j` of point `q`.
+  [[nodiscard]] Vec3d vector(const ShapeLayout& layout, std::size_t q, std::size_t j) const {
+    Vec3d v{0, 0, 0};
+    for (std::size_t i = 0; i < layout.components(j); ++i)
+      v[i] = number(q * layout.numbers() + layout.begin(j) + i);
+    return v;
   }
-  [[nodiscard]] Mat3d matrix(std::size_t i) const {
-    return {vector(3 * i), vector(3 * i + 1), vector(3 * i + 2)};
+  /// Matrix number `q`, by columns.
+  [[nodiscard]] Mat3d matrix(std::size_t q) const {
+    const ShapeLayout columns{.vectors = 3};
+    return {vector(columns, q, 0), vector(columns, q, 1), vector(columns, q, 2)};
   }
 
  private:
@@ -34,12 +39,15 @@ class LaneNumbers {
 /// The shape gradients of all nodes at point `q` of a cell whose shape data are `numbers`.
 template <int nodes, int points>
 NodeVectors<nodes> read_gradients(const ReferenceElement<nodes, points>& element, ShapeData kind,
-                                  const LaneNumbers& numbers, std::size_t q) {
+                                  const ShapeLayout& layout, const LaneNumbers& numbers, std::size_t q) {
   NodeVectors<nodes> gradients{};
   for (std::size_t a = 1; a < nodes; ++a) {
-    gradients[a] = kind == ShapeData::inverse_jacobian
-                       ? transpose_times(numbers.matrix(q), element.gradients[q][a])
-                       : numbers.vector(q * (nodes - 1) + a - 1);
+    if (kind == ShapeData::inverse_jacobian) {
+      for (std::size_t k = 0; k < 3; ++k)
+        gradients[a] += element.gradients[q][a][k] * numbers.vector(layout, q, k);
+    } else {
+      gradients[a] = numbers.vector(layout, q, a - 1);
+    }
     gradients[0] -= gradients[a];
   }
   return gradients;
@@ -48,7 +56,7 @@ NodeVectors<nodes> read_gradients(const ReferenceElement<nodes, points>& element
 /// A quadrature point of one cell, read back from the batches.
 template <int nodes>
 struct RestPoint {
-  NodeVectors<nodes> gradients;  ///< ∂N_a/∂X
+  NodeVectors<nodes> gradients;  ///< ∂N_a/∂X, turned as the cell is (shape_layout.hpp)
   double volume;                 ///< |∂X/∂ξ| W
 };
 
@@ -57,9 +65,10 @@ template <int nodes, int points>
 RestPoint<nodes> rest_point(const ReferenceElement<nodes, points>& element, const ElementBlock& block,
                             std::size_t slot, std::size_t q) {
   const auto lanes = static_cast<std::size_t>(block.lanes);
-  const LaneNumbers shape(block.shapes, block.shapes.size() / block.cell_of_lane.size(), lanes, slot);
+  const ShapeLayout layout = rest_layout(block.shape_data, nodes, points);
+  const LaneNumbers shape(block.shapes, points * layout.numbers(), lanes, slot);
   const LaneNumbers volumes(block.volumes, points, lanes, slot);
-  return {read_gradients(element, block.shape_data, shape, q), volumes.number(q)};
+  return {read_gradients(element, block.shape_data, layout, shape, q), volumes.number(q)};
 }
 
 }  // namespace evert

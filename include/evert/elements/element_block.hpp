@@ -2,6 +2,7 @@
 #include "evert/core/aligned.hpp"
 #include "evert/core/index.hpp"
 #include "evert/core/number_array.hpp"
+#include "evert/elements/shape_layout.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/mesh.hpp"
 
@@ -19,13 +20,6 @@ struct BatchRange {
   LocalIndex end = 0;
 };
 
-/// What is kept of the rest shape at each quadrature point.
-enum class ShapeData {
-  node_gradients,  ///< ∂N_a/∂X of every node but the first, whose gradient is minus their sum [1/m]; for
-                   ///< tet4 these are the rows of D_m⁻¹
-  inverse_jacobian,  ///< (∂X/∂ξ)⁻¹ by columns; for elements that are tensor products
-};
-
 struct ElementBlock {
   CellType type = CellType::tet4;
   int lanes = 1;  ///< cells per batch: the width of the SIMD pack that will read them
@@ -34,7 +28,7 @@ struct ElementBlock {
   BatchRange boundary;              ///< the others
   AlignedVector<LocalIndex> nodes;  ///< [batch][node of the cell][lane]
   ShapeData shape_data = ShapeData::node_gradients;
-  NumberArray shapes;   ///< [batch][point][node 1…][3][lane] or [batch][point][column][row][lane]
+  NumberArray shapes;   ///< [batch][point][number][lane], in the order of rest_layout()
   NumberArray volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
   std::vector<LocalIndex>
       cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding

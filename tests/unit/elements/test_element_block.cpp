@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <set>
@@ -79,7 +80,7 @@ TEST(ElementBlock, PaddingHasNoShapeAndTheNodesOfACell) {
     for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
       if (block.cell_of_lane[slot] >= 0) continue;
       EXPECT_EQ(block.volumes[slot], 0);
-      for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(block.shapes[(slot / 4 * 9 + i) * 4 + slot % 4], 0);
+      for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(block.shapes[(slot / 4 * 6 + i) * 4 + slot % 4], 0);
       for (std::size_t a = 0; a < 4; ++a) {
         const LocalIndex node = block.nodes[(slot / 4 * 4 + a) * 4 + slot % 4];
         EXPECT_NE(std::find(nodes.begin(), nodes.end(), node), nodes.end());
@@ -108,29 +109,65 @@ TEST(ElementBlock, VolumesFillTheMesh) {
   EXPECT_NEAR(by_hexes, 27, 1e-13);
 }
 
-/// Gradients reproduce a linear field: Σ (x_a − x_0) ⊗ ∂N_a/∂X = A for x = A X.
+/// The numbers of point `point` of a block of scalars, as vectors.
+std::vector<Vec3d> vectors_of(const ElementBlock& block, std::size_t point) {
+  const auto points = static_cast<int>(block.volumes.size() / block.cell_of_lane.size());
+  const ShapeLayout layout = rest_layout(block.shape_data, node_count(block.type), points);
+  std::vector<Vec3d> vectors(layout.vectors, Vec3d{0, 0, 0});
+  for (std::size_t j = 0; j < layout.vectors; ++j) {
+    for (std::size_t i = 0; i < layout.components(j); ++i)
+      vectors[j][i] = block.shapes[point * layout.numbers() + layout.begin(j) + i];
+  }
+  return vectors;
+}
+
+/// Gradients reproduce a linear field x = A X in their own frame: Σ (x_a − x_0) ⊗ ∂N_a/∂X = A Q.
 void expect_linear_field_reproduced(CellType type, std::span<const LocalIndex> cells,
-                                    std::span<const Vec3d> positions, std::size_t nodes, std::size_t points) {
+                                    std::span<const Vec3d> positions) {
   const Mat3d a{{{{1.1, 0.2, -0.3}, {0.4, 0.7, 0.1}, {-0.2, 0.5, 1.3}}}};
   const auto block = make_element_block(type, cells, 0, positions, 1);
+  const auto nodes = static_cast<std::size_t>(node_count(type));
+  const std::size_t points = block.volumes.size() / block.cell_of_lane.size();
   for (std::size_t point = 0; point < block.volumes.size(); ++point) {
     const auto position = [&](std::size_t n) {
       return positions[static_cast<std::size_t>(block.nodes[point / points * nodes + n])];
     };
-    Mat3d f{};
+    const std::vector<Vec3d> gradients = vectors_of(block, point);
+    Mat3d f{}, q{};
     for (std::size_t n = 1; n < nodes; ++n) {
-      const std::size_t g = (point * (nodes - 1) + n - 1) * 3;
-      f += outer(a * (position(n) - position(0)),
-                 Vec3d{block.shapes[g], block.shapes[g + 1], block.shapes[g + 2]});
+      f += outer(a * (position(n) - position(0)), gradients[n - 1]);
+      q += outer(position(n) - position(0), gradients[n - 1]);
     }
-    EXPECT_NEAR(norm(f - a), 0, 1e-14);
+    EXPECT_NEAR(norm(f - a * q), 0, 1e-14);
+    EXPECT_NEAR(norm(times_transpose(q, q) - identity<double>()), 0, 1e-14);
+    EXPECT_NEAR(determinant(q), 1, 1e-14);
   }
 }
 
 TEST(ElementBlock, GradientsReproduceALinearField) {
   const Box box(2);
-  expect_linear_field_reproduced(CellType::tet4, box.tets, box.positions, 4, 1);
-  expect_linear_field_reproduced(CellType::hex8, box.hexes, box.positions, 8, 8);
+  expect_linear_field_reproduced(CellType::tet4, box.tets, box.positions);
+  expect_linear_field_reproduced(CellType::hex8, box.hexes, box.positions);
+}
+
+TEST(TriangularFrame, TurnsWhateverItIsGiven) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  const auto vector = [&] { return Vec3d{normal(random), normal(random), normal(random)}; };
+  for (int i = 0; i < 2000; ++i) {
+    Mat3d v{vector(), vector(), vector()};
+    if (i % 5 == 1) v.column[1] = 2.5 * v.column[0];              // no plane
+    if (i % 5 == 2) v.column[2] = v.column[0] + 1e-9 * vector();  // a sliver
+    if (i % 5 == 3) v.column[static_cast<std::size_t>(i) % 3] = {0, 0, 0};
+    if (i % 5 == 4) v = std::pow(10.0, i % 7 * 20 - 60) * v;
+    const Mat3d q = triangular_frame(v);
+    EXPECT_NEAR(norm(times_transpose(q, q) - identity<double>()), 0, 2e-15);
+    EXPECT_NEAR(determinant(q), 1, 2e-15);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vec3d turned = transpose_times(q, v.column[j]);
+      for (std::size_t k = j + 1; k < 3; ++k) EXPECT_LE(std::abs(turned[k]), 1e-15 * norm(v.column[j])) << i;
+    }
+  }
 }
 
 TEST(BatchOrder, PutsStrangersIntoABatch) {

@@ -154,7 +154,7 @@ TEST(Memory, PerTetrahedron) {
     return static_cast<double>(block->memory()) / body.cells();
   };
   // Nodes, shape gradients, volume, number of the cell and back, the two stiffnesses of the stable step.
-  EXPECT_NEAR(bytes(no_damping), 4 * 4 + 9 * 8 + 8 + 4 + 4 + 2 * 4, 1);
+  EXPECT_NEAR(bytes(no_damping), 4 * 4 + 6 * 8 + 8 + 4 + 4 + 2 * 4, 1);
   EXPECT_NEAR(bytes(rotated_damping), bytes(no_damping) + 72, 1);
 }
 

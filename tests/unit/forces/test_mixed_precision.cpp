@@ -262,7 +262,7 @@ TEST(MixedPrecision, NeedsHalfTheMemory) {
   const auto bytes = [&](const auto& block) { return static_cast<double>(block->memory()) / body.cells(); };
   EXPECT_NEAR(bytes(full_block(body, material, rotated_damping)) -
                   bytes(mixed_block(body, material, rotated_damping)),
-              4 * (9 + 1 + 9), 1);
+              4 * (6 + 1 + 9), 1);
 }
 
 }  // namespace

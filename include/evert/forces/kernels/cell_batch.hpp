@@ -12,7 +12,7 @@ namespace evert::kernels {
 /// of the kernels that the block was made for, double or float.
 struct BlockArrays {
   const LocalIndex* nodes;         ///< [batch][node][lane]
-  const void* shapes;              ///< [batch] of ShapeGradients::numbers
+  const void* shapes;              ///< [batch] of RestGradients::numbers
   const void* volumes;             ///< [batch][point][lane]
   const LocalIndex* cell_of_lane;  ///< [batch][lane]
   const float* rest_stiffness;     ///< [batch][lane] λ_e of the stable step, see tangent_bound.hpp [1/s²]
@@ -36,13 +36,13 @@ struct CellBatch {
   static constexpr std::size_t points = element.points;
 
   const LocalIndex* nodes;
-  ShapeGradients<T, element> shape;
+  RestGradients<T, element> shape;
   const scalar_t<T>* volumes;
 
   EVERT_ALWAYS_INLINE CellBatch(const BlockArrays& block, LocalIndex batch)
       : nodes(block.nodes + static_cast<std::size_t>(batch) * element.nodes * lanes),
-        shape{static_cast<const scalar_t<T>*>(block.shapes) +
-              static_cast<std::size_t>(batch) * points * decltype(shape)::numbers_per_point * lanes},
+        shape{{static_cast<const scalar_t<T>*>(block.shapes) +
+               static_cast<std::size_t>(batch) * points * decltype(shape)::layout.numbers() * lanes}},
         volumes(static_cast<const scalar_t<T>*>(block.volumes) +
                 static_cast<std::size_t>(batch) * points * lanes) {}
 

@@ -13,14 +13,14 @@ namespace evert::kernels {
 
 template <const auto& element, DampingModel damping>
 inline constexpr bool keeps_rotated_gradients =
-    damping == DampingModel::rotated&& ShapeGradients<double, element>::numbers_per_point <= 9;
+    damping == DampingModel::rotated&& TurnedGradients<double, element>::layout.numbers() <= 9;
 
 /// Numbers kept per batch and lane.
 template <const auto& element, DampingModel damping>
 inline constexpr std::size_t damping_numbers =
     damping == DampingModel::none ? 0
                                   : element.points*(keeps_rotated_gradients<element, damping>
-                                                        ? ShapeGradients<double, element>::numbers_per_point
+                                                        ? TurnedGradients<double, element>::layout.numbers()
                                                         : 9);
 
 /// The state of one batch.
@@ -34,7 +34,7 @@ struct DampingState {
                 static_cast<std::size_t>(batch) * damping_numbers<element, damping> * lanes) {}
 
   /// h_a, to be used like the gradients at rest.
-  EVERT_ALWAYS_INLINE ShapeGradients<T, element> rotated_shape() const { return {numbers}; }
+  EVERT_ALWAYS_INLINE TurnedGradients<T, element> rotated_shape() const { return {{numbers}}; }
   /// A of point q.
   EVERT_ALWAYS_INLINE Mat3<T> frame(std::size_t q) const { return load_matrix<T>(numbers + 9 * q * lanes); }
   EVERT_ALWAYS_INLINE void store_frame(std::size_t q, const Mat3<T>& frame) const {
@@ -44,7 +44,7 @@ struct DampingState {
 
 /// The gradients that the stresses of damping_stress_stage act on.
 template <Real T, const auto& element, DampingModel damping>
-EVERT_ALWAYS_INLINE ShapeGradients<T, element> damping_shape(const BlockArrays& block, LocalIndex batch) {
+EVERT_ALWAYS_INLINE auto damping_shape(const BlockArrays& block, LocalIndex batch) {
   if constexpr (keeps_rotated_gradients<element, damping>) {
     return DampingState<T, element, damping>(block, batch).rotated_shape();
   } else {
