@@ -20,8 +20,7 @@ bool has_volume(double jacobian_determinant) {
 
 class CellList {
  public:
-  CellList(std::span<const LocalIndex> nodes, int per_cell)
-      : nodes_(nodes), per_cell_(static_cast<std::size_t>(per_cell)) {}
+  CellList(std::span<const LocalIndex> nodes, std::size_t per_cell) : nodes_(nodes), per_cell_(per_cell) {}
   [[nodiscard]] LocalIndex size() const { return static_cast<LocalIndex>(nodes_.size() / per_cell_); }
   [[nodiscard]] std::span<const LocalIndex> operator[](LocalIndex cell) const {
     return nodes_.subspan(static_cast<std::size_t>(cell) * per_cell_, per_cell_);
@@ -42,22 +41,23 @@ class CellList {
 }
 
 /// Writes the numbers of one cell into its lane of a block.
-template <int nodes, int points>
 class LaneWriter {
  public:
-  LaneWriter(const ReferenceElement<nodes, points>& element, ElementBlock& block)
-      : element_(element), block_(block), layout_(rest_layout(block.shape_data, nodes, points)) {}
+  explicit LaneWriter(ElementBlock& block)
+      : element_(block.element),
+        block_(block),
+        layout_(rest_layout(block.shape_data, element_.nodes(), element_.points())) {}
 
   void write_nodes(std::size_t slot, std::span<const LocalIndex> cell) {
-    for (std::size_t a = 0; a < nodes; ++a) block_.nodes[at(slot, nodes, a)] = cell[a];
+    for (std::size_t a = 0; a < cell.size(); ++a) block_.nodes[at(slot, cell.size(), a)] = cell[a];
   }
 
   void write_rest_shape(std::size_t slot, std::span<const LocalIndex> cell,
                         std::span<const Vec3d> rest_positions) {
-    for (std::size_t q = 0; q < points; ++q) {
+    for (std::size_t q = 0; q < element_.points(); ++q) {
       const Mat3d jacobian = rest_jacobian(element_, q, cell, rest_positions);
-      block_.volumes.set(at(slot, points, q), element_.weights[q] * determinant(jacobian));
-      const RestVectors<nodes, points> vectors{block_.shape_data, element_, q, inverse(jacobian)};
+      block_.volumes.set(at(slot, element_.points(), q), element_.weight(q) * determinant(jacobian));
+      const RestVectors vectors(element_, block_.shape_data, q, jacobian);
       const Mat3d frame = vectors.frame();
       for (std::size_t j = 0; j < layout_.vectors; ++j)
         write_shape(slot, q, j, transpose_times(frame, vectors[j]));
@@ -69,7 +69,7 @@ class LaneWriter {
   void write_shape(std::size_t slot, std::size_t q, std::size_t j, const Vec3d& vector) {
     const std::size_t begin = q * layout_.numbers() + layout_.begin(j);
     for (std::size_t i = 0; i < layout_.components(j); ++i)
-      block_.shapes.set(at(slot, points * layout_.numbers(), begin + i), vector[i]);
+      block_.shapes.set(at(slot, element_.points() * layout_.numbers(), begin + i), vector[i]);
   }
 
   /// Position of number `i` of the `count` a cell has, in an array [batch][count][lane].
@@ -78,7 +78,7 @@ class LaneWriter {
     return (slot / lanes * count + i) * lanes + slot % lanes;
   }
 
-  const ReferenceElement<nodes, points>& element_;
+  const ElementView& element_;
   ElementBlock& block_;
   ShapeLayout layout_;
 };
@@ -101,55 +101,50 @@ std::vector<LocalIndex> lanes_of_cells(std::span<const LocalIndex> nodes, int pe
 
 }  // namespace
 
-std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const LocalIndex> nodes,
+std::vector<LocalIndex> cells_without_volume(const ElementView& element, std::span<const LocalIndex> nodes,
                                              std::span<const Vec3d> rest_positions) {
-  return with_reference_element(
-      type, [&]<int node_total, int point_total>(const ReferenceElement<node_total, point_total>& element) {
-        const CellList cells(nodes, node_total);
-        std::vector<LocalIndex> bad;
-        for (LocalIndex cell = 0; cell < cells.size(); ++cell) {
-          for (std::size_t q = 0; q < point_total; ++q) {
-            if (has_volume(determinant(rest_jacobian(element, q, cells[cell], rest_positions)))) continue;
-            bad.push_back(cell);
-            break;
-          }
-        }
-        return bad;
-      });
+  const CellList cells(nodes, element.nodes());
+  std::vector<LocalIndex> bad;
+  for (LocalIndex cell = 0; cell < cells.size(); ++cell) {
+    for (std::size_t q = 0; q < element.points(); ++q) {
+      if (has_volume(determinant(rest_jacobian(element, q, cells[cell], rest_positions)))) continue;
+      bad.push_back(cell);
+      break;
+    }
+  }
+  return bad;
 }
 
-ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes, LocalIndex interior,
-                                std::span<const Vec3d> rest_positions, int lanes, ShapeData shape_data,
-                                Precision precision) {
-  return with_reference_element(
-      type, [&]<int node_total, int point_total>(const ReferenceElement<node_total, point_total>& element) {
-        const CellList cells(nodes, node_total);
-        if (const auto bad = cells_without_volume(type, nodes, rest_positions); !bad.empty()) {
-          throw_without_volume(type, bad, cells.size());
-        }
+ElementBlock make_element_block(const ElementView& element, std::span<const LocalIndex> nodes,
+                                LocalIndex interior, std::span<const Vec3d> rest_positions, int lanes,
+                                ShapeData shape_data, Precision precision) {
+  const CellList cells(nodes, element.nodes());
+  if (const auto bad = cells_without_volume(element, nodes, rest_positions); !bad.empty()) {
+    throw_without_volume(element.type(), bad, cells.size());
+  }
 
-        ElementBlock block;
-        block.type = type;
-        block.lanes = lanes;
-        block.shape_data = shape_data;
-        block.cells = cells.size();
-        block.cell_of_lane = lanes_of_cells(nodes, node_total, cells.size(), interior, lanes);
-        block.interior = {0, (interior + lanes - 1) / lanes};
-        block.boundary = {block.interior.end, static_cast<LocalIndex>(block.cell_of_lane.size()) / lanes};
+  ElementBlock block;
+  block.element = element;
+  block.lanes = lanes;
+  block.shape_data = shape_data;
+  block.cells = cells.size();
+  block.cell_of_lane =
+      lanes_of_cells(nodes, static_cast<int>(element.nodes()), cells.size(), interior, lanes);
+  block.interior = {0, (interior + lanes - 1) / lanes};
+  block.boundary = {block.interior.end, static_cast<LocalIndex>(block.cell_of_lane.size()) / lanes};
 
-        const std::size_t slots = block.cell_of_lane.size();
-        block.nodes.resize(slots * node_total);
-        block.shapes = {precision,
-                        slots * point_total * rest_layout(shape_data, node_total, point_total).numbers()};
-        block.volumes = {precision, slots * point_total};
-        LaneWriter writer(element, block);
-        for (std::size_t slot = 0; slot < slots; ++slot) {
-          const LocalIndex cell = block.cell_of_lane[slot];
-          writer.write_nodes(slot, cells[cell >= 0 ? cell : cells.size() - 1]);
-          if (cell >= 0) writer.write_rest_shape(slot, cells[cell], rest_positions);
-        }
-        return block;
-      });
+  const std::size_t slots = block.cell_of_lane.size();
+  block.nodes.resize(slots * element.nodes());
+  block.shapes = {precision, slots * element.points() *
+                                 rest_layout(shape_data, element.nodes(), element.points()).numbers()};
+  block.volumes = {precision, slots * element.points()};
+  LaneWriter writer(block);
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    const LocalIndex cell = block.cell_of_lane[slot];
+    writer.write_nodes(slot, cells[cell >= 0 ? cell : cells.size() - 1]);
+    if (cell >= 0) writer.write_rest_shape(slot, cells[cell], rest_positions);
+  }
+  return block;
 }
 
 }  // namespace evert

@@ -5,6 +5,14 @@
 
 namespace evert {
 
+Mat3d rest_jacobian(const ElementView& element, std::size_t q, std::span<const LocalIndex> cell,
+                    std::span<const Vec3d> rest_positions) {
+  Mat3d jacobian{};
+  for (std::size_t a = 0; a < cell.size(); ++a)
+    jacobian += outer(rest_positions[static_cast<std::size_t>(cell[a])], element.gradient(q, a));
+  return jacobian;
+}
+
 Mat3d triangular_frame(const Mat3d& first_vectors) {
   Eigen::Matrix3d columns;
   for (int i = 0; i < 3; ++i) {

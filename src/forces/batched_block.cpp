@@ -22,11 +22,10 @@ std::size_t bytes(const Vector& v) {
 
 /// A point of one cell as its damping operator sees it: with K_ab = V (β (h_b h_aᵀ + g_a·g_b A Aᵀ) + α h_a
 /// h_bᵀ), h = A g.
-template <int nodes>
 struct DampingPoint {
-  NodeVectors<nodes> gradients;  ///< g_a
-  Mat3d frame;                   ///< A
-  double volume;                 ///< V
+  NodeVectors gradients;  ///< g_a
+  Mat3d frame;            ///< A
+  double volume;          ///< V
 
   [[nodiscard]] Mat3d block(std::size_t a, std::size_t b, const Damping& damping) const {
     const Vec3d ha = frame * gradients[a];
@@ -36,7 +35,7 @@ struct DampingPoint {
   }
 
   /// Adds all blocks to a dense row-major matrix.
-  void add_to(std::span<double> matrix, const Damping& damping) const {
+  void add_to(std::size_t nodes, std::span<double> matrix, const Damping& damping) const {
     for (std::size_t a = 0; a < nodes; ++a) {
       for (std::size_t b = 0; b < nodes; ++b) {
         const Mat3d of_nodes = block(a, b, damping);
@@ -50,11 +49,11 @@ struct DampingPoint {
 
 }  // namespace
 
-BatchedBlock::BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> rest_positions,
-                           const Material& material, const Damping& damping,
-                           const kernels::ElasticKernels& kernels)
-    : element_block_(make_element_block(cells.type, cells.nodes, cells.interior, rest_positions,
-                                        kernels.lanes, kernels.shape_data, kernels.precision)),
+BatchedBlock::BatchedBlock(const ElementView& element, const ElasticCells& cells,
+                           std::span<const Vec3d> rest_positions, const Material& material,
+                           const Damping& damping, const kernels::ElasticKernels& kernels)
+    : element_block_(make_element_block(element, cells.nodes, cells.interior, rest_positions, kernels.lanes,
+                                        kernels.shape_data, kernels.precision)),
       material_(material),
       damping_(damping),
       density_(cells.density),
@@ -95,26 +94,25 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
   if (!damped()) return;
   const auto lanes = static_cast<std::size_t>(element_block_.lanes);
   const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
+  const ElementView& element = element_block_.element;
   const LaneNumbers state(damping_state_, static_cast<std::size_t>(kernels_.damping_numbers), lanes, slot);
-  const auto add_points = [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
-    for (std::size_t q = 0; q < points; ++q) {
-      if (kernels_.rotated_gradients) {  // V is in the h_a already
-        const ShapeLayout full{.vectors = rest_layout(element_block_.shape_data, nodes, points).vectors};
-        const auto h = read_gradients(element, element_block_.shape_data, full, state, q);
-        DampingPoint<nodes>{h, identity<double>(), 1}.add_to(matrix, damping_);
-      } else {
-        const auto rest = rest_point(element, element_block_, slot, q);
-        DampingPoint<nodes>{rest.gradients, state.matrix(q), rest.volume}.add_to(matrix, damping_);
-      }
+  const ShapeLayout full{
+      .vectors = rest_layout(element_block_.shape_data, element.nodes(), element.points()).vectors};
+  for (std::size_t q = 0; q < element.points(); ++q) {
+    if (kernels_.rotated_gradients) {  // V is in the h_a already
+      const auto h = read_gradients(element, element_block_.shape_data, full, state, q);
+      DampingPoint{h, identity<double>(), 1}.add_to(element.nodes(), matrix, damping_);
+    } else {
+      const auto rest = rest_point(element_block_, slot, q);
+      DampingPoint{rest.gradients, state.matrix(q), rest.volume}.add_to(element.nodes(), matrix, damping_);
     }
-  };
-  with_reference_element(element_block_.type, add_points);
+  }
 }
 
 CellNodes BatchedBlock::cell_nodes(LocalIndex cell) const {
   const auto lanes = static_cast<std::size_t>(element_block_.lanes);
   const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
-  CellNodes nodes(static_cast<std::size_t>(node_count(element_block_.type)));
+  CellNodes nodes(element_block_.element.nodes());
   const std::size_t first = slot / lanes * lanes * nodes.size() + slot % lanes;
   for (std::size_t a = 0; a < nodes.size(); ++a) nodes[a] = element_block_.nodes[first + a * lanes];
   return nodes;
@@ -162,11 +160,18 @@ std::size_t BatchedBlock::memory() const {
          damping_state_.bytes() + bytes(lane_of_cell_);
 }
 
+std::unique_ptr<ElasticBlock> make_elastic_block(const ElementView& element, const ElasticCells& cells,
+                                                 std::span<const Vec3d> rest_positions,
+                                                 const Material& material, const Damping& damping,
+                                                 const kernels::ElasticKernels& kernels) {
+  return std::make_unique<BatchedBlock>(element, cells, rest_positions, material, damping, kernels);
+}
+
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
                                                  std::span<const Vec3d> rest_positions,
                                                  const Material& material, const Damping& damping,
                                                  const kernels::ElasticKernels& kernels) {
-  return std::make_unique<BatchedBlock>(cells, rest_positions, material, damping, kernels);
+  return make_elastic_block(reference_element(cells.type), cells, rest_positions, material, damping, kernels);
 }
 
 }  // namespace evert

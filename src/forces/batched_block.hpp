@@ -13,8 +13,8 @@ namespace evert {
 /// kernels hold pointers into it.
 class BatchedBlock final : public ElasticBlock {
  public:
-  BatchedBlock(const ElasticCells& cells, std::span<const Vec3d> rest_positions, const Material& material,
-               const Damping& damping, const kernels::ElasticKernels& kernels);
+  BatchedBlock(const ElementView& element, const ElasticCells& cells, std::span<const Vec3d> rest_positions,
+               const Material& material, const Damping& damping, const kernels::ElasticKernels& kernels);
   BatchedBlock(const BatchedBlock&) = delete;
   BatchedBlock& operator=(const BatchedBlock&) = delete;
 

@@ -1,14 +1,13 @@
 #pragma once
 #include "evert/elements/element_block.hpp"
-#include "evert/elements/reference_element.hpp"
 
 #include <array>
 #include <cstddef>
 
 namespace evert {
 
-template <int nodes>
-using NodeVectors = std::array<Vec3d, nodes>;
+/// One for each node of an element; the rest are zero.
+using NodeVectors = std::array<Vec3d, most_nodes>;
 
 /// Numbers of one lane among those of a batch.
 class LaneNumbers {
@@ -37,14 +36,13 @@ class LaneNumbers {
 };
 
 /// The shape gradients of all nodes at point `q` of a cell whose shape data are `numbers`.
-template <int nodes, int points>
-NodeVectors<nodes> read_gradients(const ReferenceElement<nodes, points>& element, ShapeData kind,
-                                  const ShapeLayout& layout, const LaneNumbers& numbers, std::size_t q) {
-  NodeVectors<nodes> gradients{};
-  for (std::size_t a = 1; a < nodes; ++a) {
+inline NodeVectors read_gradients(const ElementView& element, ShapeData kind, const ShapeLayout& layout,
+                                  const LaneNumbers& numbers, std::size_t q) {
+  NodeVectors gradients{};
+  for (std::size_t a = 1; a < element.nodes(); ++a) {
     if (kind == ShapeData::inverse_jacobian) {
       for (std::size_t k = 0; k < 3; ++k)
-        gradients[a] += element.gradients[q][a][k] * numbers.vector(layout, q, k);
+        gradients[a] += element.gradient(q, a)[k] * numbers.vector(layout, q, k);
     } else {
       gradients[a] = numbers.vector(layout, q, a - 1);
     }
@@ -54,20 +52,18 @@ NodeVectors<nodes> read_gradients(const ReferenceElement<nodes, points>& element
 }
 
 /// A quadrature point of one cell, read back from the batches.
-template <int nodes>
 struct RestPoint {
-  NodeVectors<nodes> gradients;  ///< ∂N_a/∂X, turned as the cell is (shape_layout.hpp)
-  double volume;                 ///< |∂X/∂ξ| W
+  NodeVectors gradients;  ///< ∂N_a/∂X, turned as the cell is (shape_layout.hpp)
+  double volume;          ///< |∂X/∂ξ| W
 };
 
 /// Point `q` of the cell in lane number `slot` of all lanes.
-template <int nodes, int points>
-RestPoint<nodes> rest_point(const ReferenceElement<nodes, points>& element, const ElementBlock& block,
-                            std::size_t slot, std::size_t q) {
+inline RestPoint rest_point(const ElementBlock& block, std::size_t slot, std::size_t q) {
+  const ElementView& element = block.element;
   const auto lanes = static_cast<std::size_t>(block.lanes);
-  const ShapeLayout layout = rest_layout(block.shape_data, nodes, points);
-  const LaneNumbers shape(block.shapes, points * layout.numbers(), lanes, slot);
-  const LaneNumbers volumes(block.volumes, points, lanes, slot);
+  const ShapeLayout layout = rest_layout(block.shape_data, element.nodes(), element.points());
+  const LaneNumbers shape(block.shapes, element.points() * layout.numbers(), lanes, slot);
+  const LaneNumbers volumes(block.volumes, element.points(), lanes, slot);
   return {read_gradients(element, block.shape_data, layout, shape, q), volumes.number(q)};
 }
 

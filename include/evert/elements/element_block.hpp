@@ -2,6 +2,7 @@
 #include "evert/core/aligned.hpp"
 #include "evert/core/index.hpp"
 #include "evert/core/number_array.hpp"
+#include "evert/elements/element_view.hpp"
 #include "evert/elements/shape_layout.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/mesh.hpp"
@@ -21,7 +22,7 @@ struct BatchRange {
 };
 
 struct ElementBlock {
-  CellType type = CellType::tet4;
+  ElementView element;
   int lanes = 1;  ///< cells per batch: the width of the SIMD pack that will read them
   LocalIndex cells = 0;
   BatchRange interior;              ///< batches whose cells touch owned nodes only
@@ -36,17 +37,18 @@ struct ElementBlock {
   [[nodiscard]] LocalIndex batches() const { return boundary.end; }
 };
 
-/// Batches the cells of `type` for packs of `lanes`. `nodes`: node_count(type) per cell; cells [0, interior)
+/// Batches cells for packs of `lanes`. `nodes`: element.nodes() per cell; cells [0, interior)
 /// become the interior batches, the others the boundary ones, each set ordered by batch_order(). Padding
 /// lanes have zero shape data and volume and the nodes of the last cell, so that reading and adding to them
 /// is safe. Throws UserError when a cell has no positive rest volume, with count and first numbers.
-[[nodiscard]] ElementBlock make_element_block(CellType type, std::span<const LocalIndex> nodes,
+[[nodiscard]] ElementBlock make_element_block(const ElementView& element, std::span<const LocalIndex> nodes,
                                               LocalIndex interior, std::span<const Vec3d> rest_positions,
                                               int lanes, ShapeData shape_data = ShapeData::node_gradients,
                                               Precision precision = Precision::full);
 
 /// Cells with a quadrature point at which the rest volume is zero, negative or not finite; ascending.
-[[nodiscard]] std::vector<LocalIndex> cells_without_volume(CellType type, std::span<const LocalIndex> nodes,
+[[nodiscard]] std::vector<LocalIndex> cells_without_volume(const ElementView& element,
+                                                           std::span<const LocalIndex> nodes,
                                                            std::span<const Vec3d> rest_positions);
 
 }  // namespace evert

@@ -1,6 +1,5 @@
 #pragma once
-#include "evert/math/vec3.hpp"
-#include "evert/mesh/mesh.hpp"
+#include "evert/elements/element_view.hpp"
 
 #include <array>
 #include <span>
@@ -8,26 +7,6 @@
 /// The reference elements: one aggregate each. A new element is one more aggregate and its name in
 /// AllReferenceElements.
 namespace evert {
-
-/// Shape functions and quadrature of one cell type on its reference cell ξ. Nodes in VTK's order.
-template <int node_total, int point_total>
-struct ReferenceElement {
-  static constexpr int nodes = node_total;
-  static constexpr int points = point_total;
-  template <class Value>
-  using PerPoint = std::array<Value, point_total>;
-  template <class Value>
-  using PerNode = std::array<Value, node_total>;
-
-  CellType type;
-  /// The shape functions are products of those of one dimension, and so are the points: gradients can be
-  /// taken axis by axis, which needs no more of the rest shape than ∂X/∂ξ at each point
-  /// (kernels/tensor_product.hpp).
-  bool tensor_product = false;
-  PerPoint<double> weights;            ///< W of paper A, section 4; they sum to the reference volume
-  PerPoint<PerNode<double>> values;    ///< N_a at each point
-  PerPoint<PerNode<Vec3d>> gradients;  ///< H: ∂N_a/∂ξ at each point
-};
 
 /// Linear tetrahedron: F is constant, one point at the centroid.
 inline constexpr ReferenceElement<4, 1> tet4{
@@ -132,32 +111,6 @@ constexpr ReferenceElement<10, 4> make_tet10() {
 inline constexpr ReferenceElement<6, 6> wedge6 = detail::make_wedge6();
 inline constexpr ReferenceElement<10, 4> tet10 = detail::make_tet10();
 
-/// Splits a cell over its nodes for lumped masses: what each gets of the `volumes` |∂X/∂ξ| W of the points.
-///
-/// Row sums of the consistent mass matrix, Σ_q N_a V_q, where every N_a is positive at the points. In tet10
-/// the corners would get −1/20 each. There its diagonal, Σ_q N_a² V_q, is scaled to the volume of the cell:
-/// positive for any shape, and it keeps the mass.  Hinton, Rock and Zienkiewicz 1976
-template <int nodes, int points, class Element = ReferenceElement<nodes, points>>
-constexpr auto lumped_volumes(const ReferenceElement<nodes, points>& element,
-                              const typename Element::template PerPoint<double>& volumes) {
-  typename Element::template PerNode<double> rows{}, diagonal{};
-  double volume = 0, trace = 0;
-  bool positive = true;
-  for (std::size_t q = 0; q < points; ++q) {
-    volume += volumes[q];
-    for (std::size_t a = 0; a < nodes; ++a) {
-      const double value = element.values[q][a];
-      positive = positive && value > 0;
-      rows[a] += value * volumes[q];
-      diagonal[a] += value * value * volumes[q];
-      trace += value * value * volumes[q];
-    }
-  }
-  if (positive) return rows;
-  for (double& share : diagonal) share *= volume / trace;
-  return diagonal;
-}
-
 /// A list of reference elements.
 template <const auto&... elements>
 struct ReferenceElements {};
@@ -193,5 +146,8 @@ template <class Visitor>
 auto with_reference_element(CellType type, Visitor&& visit) {
   return detail::visit_element(type, visit, AllReferenceElements{});
 }
+
+/// The reference element of `type`. Throws UserError for types without one.
+[[nodiscard]] ElementView reference_element(CellType type);
 
 }  // namespace evert

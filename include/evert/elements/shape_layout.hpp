@@ -37,8 +37,8 @@ struct ShapeLayout {
   [[nodiscard]] constexpr std::size_t numbers() const { return begin(vectors); }
 };
 
-[[nodiscard]] constexpr ShapeLayout rest_layout(ShapeData kind, int nodes, int points) {
-  return {kind == ShapeData::inverse_jacobian ? 3 : static_cast<std::size_t>(nodes) - 1, points == 1};
+[[nodiscard]] constexpr ShapeLayout rest_layout(ShapeData kind, std::size_t nodes, std::size_t points) {
+  return {kind == ShapeData::inverse_jacobian ? 3 : nodes - 1, points == 1};
 }
 
 }  // namespace evert

@@ -31,7 +31,7 @@ class CellNodes {
   [[nodiscard]] auto end() const { return nodes_.begin() + static_cast<std::ptrdiff_t>(count_); }
 
  private:
-  std::array<LocalIndex, 10> nodes_{};  // tet10 has the most
+  std::array<LocalIndex, most_nodes> nodes_{};
   std::size_t count_;
 };
 
@@ -110,6 +110,9 @@ struct ElasticCells {
                                                                Precision precision = Precision::full);
 
 /// Adds each cell's mass, shared over its nodes, to `mass` (per local node, [kg]); stays positive.
+void add_lumped_mass(const ElementView& element, const ElasticCells& cells,
+                     std::span<const Vec3d> rest_positions, std::span<double> mass);
+/// The same for the reference element of the cells' type.
 void add_lumped_mass(const ElasticCells& cells, std::span<const Vec3d> rest_positions,
                      std::span<double> mass);
 

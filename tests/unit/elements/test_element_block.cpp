@@ -1,6 +1,7 @@
 #include "evert/core/error.hpp"
 #include "evert/elements/batching.hpp"
 #include "evert/elements/element_block.hpp"
+#include "evert/elements/reference_element.hpp"
 #include "evert/elements/rest_shape.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,7 @@ struct Box {
 TEST(ElementBlock, KeepsEveryCellOnce) {
   const Box box(3);
   for (const int lanes : {1, 2, 4, 8}) {
-    const auto block = make_element_block(CellType::tet4, box.tets, 50, box.positions, lanes);
+    const auto block = make_element_block(tet4, box.tets, 50, box.positions, lanes);
     EXPECT_EQ(block.cells, 162);
     EXPECT_EQ(block.interior.end, (50 + lanes - 1) / lanes);
     EXPECT_EQ(block.batches() * lanes, static_cast<int>(block.cell_of_lane.size()));
@@ -76,7 +77,7 @@ TEST(ElementBlock, PaddingHasNoShapeAndTheNodesOfACell) {
   const Box box(2);
   for (LocalIndex cells = 1; cells <= 9; ++cells) {
     const std::span<const LocalIndex> nodes = std::span(box.tets).first(static_cast<std::size_t>(cells) * 4);
-    const auto block = make_element_block(CellType::tet4, nodes, cells / 2, box.positions, 4);
+    const auto block = make_element_block(tet4, nodes, cells / 2, box.positions, 4);
     for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
       if (block.cell_of_lane[slot] >= 0) continue;
       EXPECT_EQ(block.volumes[slot], 0);
@@ -97,22 +98,20 @@ double sum_of(const NumberArray& numbers) {
 
 TEST(ElementBlock, VolumesFillTheMesh) {
   const Box box(3);
-  const double by_tets = sum_of(make_element_block(CellType::tet4, box.tets, 162, box.positions, 4).volumes);
+  const double by_tets = sum_of(make_element_block(tet4, box.tets, 162, box.positions, 4).volumes);
   EXPECT_NEAR(by_tets, 27, 4);  // the surface is shaken
   Box flat(3);
   for (std::size_t i = 0; i < flat.positions.size(); ++i) {
     flat.positions[i] = {static_cast<double>(i % 4), static_cast<double>(i / 4 % 4),
                          static_cast<double>(i / 16)};
   }
-  const double by_hexes =
-      sum_of(make_element_block(CellType::hex8, flat.hexes, 27, flat.positions, 4).volumes);
+  const double by_hexes = sum_of(make_element_block(hex8, flat.hexes, 27, flat.positions, 4).volumes);
   EXPECT_NEAR(by_hexes, 27, 1e-13);
 }
 
 /// The numbers of point `point` of a block of scalars, as vectors.
 std::vector<Vec3d> vectors_of(const ElementBlock& block, std::size_t point) {
-  const auto points = static_cast<int>(block.volumes.size() / block.cell_of_lane.size());
-  const ShapeLayout layout = rest_layout(block.shape_data, node_count(block.type), points);
+  const ShapeLayout layout = rest_layout(block.shape_data, block.element.nodes(), block.element.points());
   std::vector<Vec3d> vectors(layout.vectors, Vec3d{0, 0, 0});
   for (std::size_t j = 0; j < layout.vectors; ++j) {
     for (std::size_t i = 0; i < layout.components(j); ++i)
@@ -122,12 +121,11 @@ std::vector<Vec3d> vectors_of(const ElementBlock& block, std::size_t point) {
 }
 
 /// Gradients reproduce a linear field x = A X in their own frame: Σ (x_a − x_0) ⊗ ∂N_a/∂X = A Q.
-void expect_linear_field_reproduced(CellType type, std::span<const LocalIndex> cells,
+void expect_linear_field_reproduced(const ElementView& element, std::span<const LocalIndex> cells,
                                     std::span<const Vec3d> positions) {
   const Mat3d a{{{{1.1, 0.2, -0.3}, {0.4, 0.7, 0.1}, {-0.2, 0.5, 1.3}}}};
-  const auto block = make_element_block(type, cells, 0, positions, 1);
-  const auto nodes = static_cast<std::size_t>(node_count(type));
-  const std::size_t points = block.volumes.size() / block.cell_of_lane.size();
+  const auto block = make_element_block(element, cells, 0, positions, 1);
+  const std::size_t nodes = element.nodes(), points = element.points();
   for (std::size_t point = 0; point < block.volumes.size(); ++point) {
     const auto position = [&](std::size_t n) {
       return positions[static_cast<std::size_t>(block.nodes[point / points * nodes + n])];
@@ -146,8 +144,8 @@ void expect_linear_field_reproduced(CellType type, std::span<const LocalIndex> c
 
 TEST(ElementBlock, GradientsReproduceALinearField) {
   const Box box(2);
-  expect_linear_field_reproduced(CellType::tet4, box.tets, box.positions);
-  expect_linear_field_reproduced(CellType::hex8, box.hexes, box.positions);
+  expect_linear_field_reproduced(tet4, box.tets, box.positions);
+  expect_linear_field_reproduced(hex8, box.hexes, box.positions);
 }
 
 TEST(TriangularFrame, TurnsWhateverItIsGiven) {
@@ -196,7 +194,7 @@ TEST(ElementBlock, RefusesCellsWithoutVolume) {
   std::swap(box.tets[4 * 7], box.tets[4 * 7 + 1]);  // inside out
   box.tets[4 * 11 + 1] = box.tets[4 * 11];          // flat
   try {
-    static_cast<void>(make_element_block(CellType::tet4, box.tets, 0, box.positions, 4));
+    static_cast<void>(make_element_block(tet4, box.tets, 0, box.positions, 4));
     FAIL() << "no error";
   } catch (const UserError& error) {
     EXPECT_NE(
@@ -204,7 +202,7 @@ TEST(ElementBlock, RefusesCellsWithoutVolume) {
         std::string::npos)
         << error.what();
   }
-  EXPECT_EQ(cells_without_volume(CellType::tet4, box.tets, box.positions), (std::vector<LocalIndex>{7, 11}));
+  EXPECT_EQ(cells_without_volume(tet4, box.tets, box.positions), (std::vector<LocalIndex>{7, 11}));
 }
 
 TEST(ElementBlock, RefusesAbsurdCoordinates) {
@@ -212,13 +210,13 @@ TEST(ElementBlock, RefusesAbsurdCoordinates) {
   for (const double scale : {0.0, 1e-120, 1e150, std::numeric_limits<double>::quiet_NaN()}) {
     std::vector<Vec3d> positions;
     for (const Vec3d& x : box.positions) positions.push_back(scale * x);
-    EXPECT_EQ(cells_without_volume(CellType::tet4, box.tets, positions).size(), 6U) << scale;
-    EXPECT_EQ(cells_without_volume(CellType::hex8, box.hexes, positions).size(), 1U) << scale;
+    EXPECT_EQ(cells_without_volume(tet4, box.tets, positions).size(), 6U) << scale;
+    EXPECT_EQ(cells_without_volume(hex8, box.hexes, positions).size(), 1U) << scale;
   }
 }
 
 TEST(ElementBlock, EmptyListMakesAnEmptyBlock) {
-  const auto block = make_element_block(CellType::tet4, {}, 0, {}, 4);
+  const auto block = make_element_block(tet4, {}, 0, {}, 4);
   EXPECT_EQ(block.batches(), 0);
   EXPECT_EQ(block.shapes.size(), 0);
 }

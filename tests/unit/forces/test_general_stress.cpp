@@ -20,7 +20,7 @@ class Kernels {
       element.tensor_product ? ShapeData::inverse_jacobian : ShapeData::node_gradients;
 
   explicit Kernels(const Body& body)
-      : block_(make_element_block(body.type, body.nodes, body.cells() / 2, body.rest,
+      : block_(make_element_block(element, body.nodes, body.cells() / 2, body.rest,
                                   static_cast<int>(lanes_v<T>), shape_data)) {
     arrays_.nodes = block_.nodes.data();
     arrays_.shapes = block_.shapes.data();
@@ -105,34 +105,36 @@ TEST(GeneralStress, OfFibresIsTheFormula) {
     for (const State& state : awkward_states(body)) {
       if (!state.unique) continue;
       ReferenceForces reference = reference_forces(body, muscle.matrix, state.x);
-      with_reference_element(body.type, [&]<int nodes, int points>(
-                                            const ReferenceElement<nodes, points>& element) {
-        for (LocalIndex c = 0; c < body.cells(); ++c) {
-          for (std::size_t q = 0; q < points; ++q) {
-            Mat3<Real80> rest{}, now{};
-            for (std::size_t n = 0; n < nodes; ++n) {
-              const auto gradient = converted<Real80>(element.gradients[q][n]);
-              const auto node = static_cast<std::size_t>(body.cell(c)[n]);
-              rest += outer(converted<Real80>(body.rest[node]), gradient);
-              now += outer(converted<Real80>(at_node(state.x, node)), gradient);
+      with_reference_element(
+          body.type, [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
+            for (LocalIndex c = 0; c < body.cells(); ++c) {
+              for (std::size_t q = 0; q < points; ++q) {
+                Mat3<Real80> rest{}, now{};
+                for (std::size_t n = 0; n < nodes; ++n) {
+                  const auto gradient = converted<Real80>(element.gradients[q][n]);
+                  const auto node = static_cast<std::size_t>(body.cell(c)[n]);
+                  rest += outer(converted<Real80>(body.rest[node]), gradient);
+                  now += outer(converted<Real80>(at_node(state.x, node)), gradient);
+                }
+                const Real80 volume = determinant(rest) * element.weights[q];
+                const ElementView view(element);
+                const RestVectors vectors(view, kernels.shape_data, q,
+                                          rest_jacobian(view, q, body.cell(c), body.rest));
+                const auto a = converted<Real80>(vectors.frame() * muscle.fibre);
+                const Vec3<Real80> fa = (now * inverse(rest)) * a;
+                const Real80 excess = dot(fa, fa) - 1;
+                reference.energy += volume * muscle.stiffness / 4 * excess * excess;
+                for (std::size_t n = 0; n < nodes; ++n) {
+                  const auto node = static_cast<std::size_t>(body.cell(c)[n]);
+                  const auto g = transpose_times(inverse(rest), converted<Real80>(element.gradients[q][n]));
+                  const Vec3<Real80> force = (volume * muscle.stiffness * excess * dot(a, g)) * fa;
+                  reference.forces[node] -= force;
+                  reference.magnitude[node] +=
+                      volume * muscle.stiffness * (1 + dot(fa, fa)) * norm(fa) * norm(g);
+                }
+              }
             }
-            const Real80 volume = determinant(rest) * element.weights[q];
-            const RestVectors<nodes, points> vectors{
-                kernels.shape_data, element, q, inverse(rest_jacobian(element, q, body.cell(c), body.rest))};
-            const auto a = converted<Real80>(vectors.frame() * muscle.fibre);
-            const Vec3<Real80> fa = (now * inverse(rest)) * a;
-            const Real80 excess = dot(fa, fa) - 1;
-            reference.energy += volume * muscle.stiffness / 4 * excess * excess;
-            for (std::size_t n = 0; n < nodes; ++n) {
-              const auto node = static_cast<std::size_t>(body.cell(c)[n]);
-              const auto g = transpose_times(inverse(rest), converted<Real80>(element.gradients[q][n]));
-              const Vec3<Real80> force = (volume * muscle.stiffness * excess * dot(a, g)) * fa;
-              reference.forces[node] -= force;
-              reference.magnitude[node] += volume * muscle.stiffness * (1 + dot(fa, fa)) * norm(fa) * norm(g);
-            }
-          }
-        }
-      });
+          });
       EXPECT_LE(relative_error(kernels.forces(muscle, state.x), reference), 1e-13) << state.name;
       EXPECT_NEAR(kernels.energy(muscle, state.x) / static_cast<double>(reference.energy), 1, 1e-12)
           << state.name;

@@ -32,8 +32,14 @@ struct ElasticKernels {
 
 }  // namespace kernels
 
-/// As make_elastic_block of elastic_block.hpp, with given kernels: they must be those of the cells' type, the
-/// model and the damping. For tests and benchmarks.
+/// As make_elastic_block of elastic_block.hpp, with given kernels: they must be those of the element, the
+/// model and the damping. For elements that Evert does not know (docs/howto/new-element.md), tests and
+/// benchmarks.
+[[nodiscard]] std::unique_ptr<ElasticBlock> make_elastic_block(
+    const ElementView& element, const ElasticCells& cells, std::span<const Vec3d> rest_positions,
+    const Material& material, const Damping& damping, const kernels::ElasticKernels& kernels);
+
+/// The same for the reference element of the cells' type.
 [[nodiscard]] std::unique_ptr<ElasticBlock> make_elastic_block(const ElasticCells& cells,
                                                                std::span<const Vec3d> rest_positions,
                                                                const Material& material,
