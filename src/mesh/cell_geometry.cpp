@@ -58,7 +58,6 @@ std::vector<Point> wedge6_points() {
 /// The four points of degree 2.
 std::vector<Point> tet10_points() {
   constexpr std::array<Vec3d, 4> slopes{{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
   const double far = (5 + 3 * std::sqrt(5.0)) / 20;
   const double near = (5 - std::sqrt(5.0)) / 20;
   std::vector<Point> points;
@@ -68,7 +67,7 @@ std::vector<Point> tet10_points() {
     Point point{.weight = 1.0 / 24};
     for (std::size_t a = 0; a < 4; ++a) point.gradients[a] = (4 * barycentric[a] - 1) * slopes[a];
     for (std::size_t e = 0; e < 6; ++e) {
-      const auto [a, b] = edges[e];
+      const auto [a, b] = edges_of_tet[e];
       point.gradients[4 + e] = 4.0 * (barycentric[a] * slopes[b] + barycentric[b] * slopes[a]);
     }
     points.push_back(point);
@@ -149,6 +148,18 @@ EdgeRange edge_range(CellType type, std::span<const Vec3d> nodes) {
       range.longest = std::max(range.longest, length);
     }
   return range;
+}
+
+double middle_offset(CellType type, std::span<const Vec3d> nodes) {
+  if (type != CellType::tet10) return 0;
+  double largest = 0;
+  for (std::size_t e = 0; e < edges_of_tet.size(); ++e) {
+    const Vec3d& a = nodes[edges_of_tet[e][0]];
+    const Vec3d& b = nodes[edges_of_tet[e][1]];
+    const double offset = norm(nodes[4 + e] - 0.5 * (a + b)) / norm(b - a);
+    largest = std::max(largest, std::isnan(offset) ? std::numeric_limits<double>::infinity() : offset);
+  }
+  return largest;
 }
 
 void append_dihedral_angles(CellType type, std::span<const Vec3d> nodes, std::vector<double>& angles) {

@@ -2,6 +2,7 @@
 
 #include "evert/core/error.hpp"
 #include "evert/mesh/boundary.hpp"
+#include "evert/mesh/cell_geometry.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,10 +13,6 @@ namespace evert {
 namespace {
 
 using Edge = std::pair<GlobalIndex, GlobalIndex>;
-
-/// In VTK's order of the middle nodes.
-constexpr std::array<std::array<std::size_t, 2>, 6> edges_of_tet{
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 Edge edge_of(std::span<const GlobalIndex> tet, std::size_t number) {
   const auto [a, b] = edges_of_tet[number];

@@ -51,18 +51,29 @@ void mirror(CellType type, std::span<GlobalIndex> nodes) {
   }
 }
 
+/// A circular arc of 120 degrees has its middle at 0.29 of its chord; a middle node that stands for another
+/// edge is at 0.5 or so.
+constexpr double largest_middle_offset = 0.3;
+
 }  // namespace
 
 void require_positive_volumes(const Mesh& mesh, const std::string& what) {
   Offenders negative;
   Offenders broken;
+  Offenders misplaced;
   for_each_cell(mesh,
                 [&](GlobalIndex cell, const CellBlock& block, std::size_t, std::span<const Vec3d> nodes) {
+                  if (middle_offset(block.type, nodes) > largest_middle_offset) return misplaced.add(cell);
                   const auto determinants = jacobian_range(block.type, nodes);
                   if (determinants.smallest > flat_jacobian) return;
                   const bool mirrored = determinants.largest < -flat_jacobian;
                   (mirrored ? negative : broken).add(cell);
                 });
+  if (misplaced.count > 0)
+    throw UserError(
+        what + ": " + misplaced.text(mesh.cell_count(), "have misplaced middle nodes") +
+        "; each must be within 0.3 of the length of its edge from the middle of that edge: are they in "
+        "the order of the format (edges 01 12 20 03 13 23 in VTK, 23 before 13 in Gmsh)?");
   if (broken.count > 0)
     throw UserError(what + ": " + broken.text(mesh.cell_count(), "are flat or folded") +
                     "; all must have positive volume at each quadrature point, so mesh that part again");

@@ -441,6 +441,13 @@ const std::vector<Case> bad_meshes{
                      "1 4 2 7 1 2 1 3 7\n2 4 2 7 1 3 1 4 7\n3 4 2 7 1 4 1 8 7\n4 4 2 7 1 8 1 5 7\n"
                      "5 4 2 7 1 5 1 6 7\n6 4 2 7 1 6 1 2 7\n"}}),
              {"negative", "evert mesh"}),
+    bad_mesh(
+        "misplaced_middle_nodes",
+        {"cube.msh",
+         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0.5 0 0\n"
+         "6 0.5 0.5 0\n7 0 0.5 0\n8 0 0 0.5\n9 0.5 0 0.5\n10 0 0.5 0.5\n$EndNodes\n$Elements\n1\n"
+         "1 11 2 7 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n"},
+        {"cube.msh: 1 of 1 cells have misplaced middle nodes", "23 before 13 in Gmsh"}),
     bad_mesh("one_flat", gmsh2({{"7 1 1 1", "7 1 1 0"}}), {"volume"}),
     {.name = "unknown_group",
      .files = {scene_with_mesh("cube.msh, groups: [skin]"), gmsh2()},

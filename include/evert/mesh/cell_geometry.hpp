@@ -1,6 +1,8 @@
 #pragma once
 #include "evert/mesh/mesh.hpp"
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,14 @@ struct EdgeRange {
   double longest = 0;
 };
 [[nodiscard]] EdgeRange edge_range(CellType type, std::span<const Vec3d> nodes);
+
+/// The edges of a tetrahedron in VTK's order of the middle nodes of tet10.
+inline constexpr std::array<std::array<std::size_t, 2>, 6> edges_of_tet{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+
+/// The largest distance of a middle node from the middle between its two corners, over the distance of these
+/// two; 0 for cells without middle nodes.
+[[nodiscard]] double middle_offset(CellType type, std::span<const Vec3d> nodes);
 
 /// Angles [degrees] between the two faces that meet at an edge, for every edge at both of its ends: 12 for
 /// tetrahedra (each twice), 24 for hexahedra, 18 for wedges. Appended to `angles`.

@@ -6,8 +6,9 @@
 /// Checks and repairs of what mesh files bring. Not collective; for the rank that holds the mesh.
 namespace evert {
 
-/// Throws UserError when a cell is flat or turned inside out at one of its quadrature points: says how many,
-/// the first of them, and how to mend it. `what` names the mesh in the message, e.g. its file.
+/// Throws UserError when a cell is flat or turned inside out at one of its quadrature points, or has a middle
+/// node far from its edge: says how many, the first of them, and how to mend it. `what` names the mesh in the
+/// message, e.g. its file.
 void require_positive_volumes(const Mesh& mesh, const std::string& what);
 
 /// Renumbers the nodes of every cell of negative volume so that it becomes positive. Returns how many there

@@ -144,6 +144,27 @@ TEST(Repair, reorients_quadratic_tetrahedra_with_their_edges) {
   EXPECT_NO_THROW(require_positive_volumes(mesh, "mixed"));  // also at the quadrature points of the tet10
 }
 
+TEST(Repair, names_cells_with_misplaced_middle_nodes) {
+  const auto refused = [](const Mesh& mesh) {
+    expect_user_error(
+        [&] { require_positive_volumes(mesh, "mixed.msh"); },
+        {"mixed.msh: 1 of 5 cells have misplaced middle nodes (counted from 0: 4)", "23 before 13"});
+  };
+  auto other_order = mixed_mesh();
+  auto& nodes = other_order.cells.back().nodes;
+  std::swap(nodes[8], nodes[9]);  // as if Gmsh's order were VTK's
+  refused(other_order);
+
+  auto astray = mixed_mesh();
+  const auto middle = static_cast<std::size_t>(astray.cells.back().nodes[5]);
+  astray.nodes[middle] += Vec3d{0.099, 0.099, 0};  // 0.297 of its edge of √2/3
+  EXPECT_NO_THROW(require_positive_volumes(astray, "mixed.msh"));
+  astray.nodes[middle] += Vec3d{0.002, 0.002, 0};
+  refused(astray);
+  astray.nodes[middle] = {std::nan(""), 0, 0};
+  refused(astray);
+}
+
 TEST(Repair, names_cells_that_cannot_be_mended) {
   auto mesh = generate_box({1, 1, 1}, {7, 1, 1}, BoxCells::hex8);
   for (auto& node : mesh.nodes) node[2] = 0;
