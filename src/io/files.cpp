@@ -93,7 +93,15 @@ void replace_file(const std::string& from, const std::string& to) {
 }
 
 void write_file(const std::string& path, const std::string& content) {
-  const std::string temporary = path + ".tmp";
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    Descriptor(path, O_WRONLY).write(content);
+    return;
+  }
+  const auto resolved = std::filesystem::weakly_canonical(path, error);
+  const std::string target = error ? path : resolved.string();
+  const std::string temporary = target + ".tmp";
   try {
     Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
     file.write(content);
@@ -103,7 +111,7 @@ void write_file(const std::string& path, const std::string& content) {
     ::unlink(temporary.c_str());
     throw;
   }
-  replace_file(temporary, path);
+  replace_file(temporary, target);
 }
 
 }  // namespace evert

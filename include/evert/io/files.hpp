@@ -20,7 +20,8 @@ void sync_file(const std::string& path);
 /// `from` takes the place of `to` in one step that survives a crash.
 void replace_file(const std::string& from, const std::string& to);
 
-/// A file with this content takes the place of `path` in one step: readers see the old or the new one.
+/// A file with this content takes the place of `path` in one step: readers see the old or the new one. What a
+/// link points to is replaced, not the link; pipes and devices (/dev/stdout) are written to.
 void write_file(const std::string& path, const std::string& content);
 
 }  // namespace evert

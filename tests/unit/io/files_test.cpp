@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "../../mpi/io/scratch.hpp"
+#include <algorithm>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace evert {
 namespace {
@@ -33,6 +37,24 @@ TEST(Files, WriteFileReplacesTheWhole) {
   write_file(directory / "file", "second");
   EXPECT_EQ(test::content_of(directory / "file"), "second");
   EXPECT_FALSE(std::filesystem::exists(directory / "file.tmp"));
+}
+
+TEST(Files, WriteFileReplacesNoLinkAndNoPipe) {
+  const Directory directory;
+  write_file(directory / "file", "text");
+  std::filesystem::create_symlink("file", directory / "link");
+  write_file(directory / "link", "by the link");
+  EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
+  EXPECT_EQ(test::content_of(directory / "file"), "by the link");
+
+  ASSERT_EQ(mkfifo((directory / "pipe").c_str(), 0600), 0);
+  const int reader = open((directory / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  write_file(directory / "pipe", "through the pipe");
+  EXPECT_TRUE(std::filesystem::is_fifo(directory / "pipe"));
+  std::string received(64, ' ');
+  received.resize(static_cast<std::size_t>(std::max<ssize_t>(read(reader, received.data(), 64), 0)));
+  close(reader);
+  EXPECT_EQ(received, "through the pipe");
 }
 
 TEST(Files, RequireWritableMakesDirectoriesButNoFile) {
