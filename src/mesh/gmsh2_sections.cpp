@@ -9,7 +9,7 @@ namespace {
 void read_text_elements(GmshFile& file, GlobalIndex count) {
   std::vector<std::int64_t> nodes;
   for (GlobalIndex i = 0; i < count; ++i) {
-    static_cast<void>(file.integer("the number of an element"));
+    const int number = file.integer("the number of an element");
     const auto& type = file.element_type(file.integer("the type of an element"));
     const auto tags = file.count("the number of tags of an element", 2);
     int physical_group = 0;
@@ -19,7 +19,7 @@ void read_text_elements(GmshFile& file, GlobalIndex count) {
     }
     nodes.clear();
     for (int n = 0; n < type.nodes; ++n) nodes.push_back(file.integer("a node of an element"));
-    file.add_element(type, nodes, {&physical_group, 1});
+    file.add_element(number, type, nodes, {&physical_group, 1});
   }
 }
 
@@ -34,7 +34,7 @@ void read_binary_elements(GmshFile& file, GlobalIndex count) {
     const auto tags = file.in.plausible_count(file.integer("the number of tags of an element"),
                                               "the number of tags of an element", 4);
     for (GlobalIndex i = 0; i < size; ++i) {
-      static_cast<void>(file.integer("the number of an element"));
+      const int number = file.integer("the number of an element");
       int physical_group = 0;
       for (GlobalIndex t = 0; t < tags; ++t) {
         const int tag = file.integer("a tag of an element");
@@ -42,7 +42,7 @@ void read_binary_elements(GmshFile& file, GlobalIndex count) {
       }
       nodes.clear();
       for (int n = 0; n < type.nodes; ++n) nodes.push_back(file.integer("a node of an element"));
-      file.add_element(type, nodes, {&physical_group, 1});
+      file.add_element(number, type, nodes, {&physical_group, 1});
     }
     done += size;
   }

@@ -83,10 +83,10 @@ void read_gmsh4_elements(GmshFile& file) {
     const auto groups = known == file.groups_of_entities.end() ? std::span<const int>{} : known->second;
     const auto count = file.count("the number of elements of a block", 4);
     for (GlobalIndex i = 0; i < count; ++i) {
-      static_cast<void>(file.size("the tag of an element"));
+      const auto tag = file.size("the tag of an element");
       nodes.clear();
       for (int n = 0; n < type.nodes; ++n) nodes.push_back(file.size("a node of an element"));
-      file.add_element(type, nodes, groups);
+      file.add_element(tag, type, nodes, groups);
     }
     done += count;
   }

@@ -2,6 +2,7 @@
 #include "input_cursor.hpp"
 #include "mesh_builder.hpp"
 #include "node_tags.hpp"
+#include "vector_field.hpp"
 #include <map>
 #include <optional>
 #include <span>
@@ -24,7 +25,7 @@ struct GmshElementType {
 /// A Gmsh file while it is read. Numbers come as words or as bytes, by the file's header.
 class GmshFile {
  public:
-  explicit GmshFile(InputCursor& cursor) : in(cursor) {}
+  GmshFile(InputCursor& cursor, VectorField& wanted) : in(cursor), vectors(wanted) {}
 
   [[nodiscard]] int integer(std::string_view what);
   [[nodiscard]] std::int64_t size(std::string_view what);  ///< Gmsh's size_t
@@ -34,11 +35,15 @@ class GmshFile {
 
   /// Throws when Evert cannot use elements of this type.
   [[nodiscard]] const GmshElementType& element_type(int id) const;
-  /// Adds the element with these nodes to the physical groups given; the first of a volume is its region.
-  void add_element(const GmshElementType& type, std::span<const std::int64_t> tags,
+  /// Adds the element `tag` with these nodes to the physical groups given; the first of a volume is its
+  /// region.
+  void add_element(std::int64_t tag, const GmshElementType& type, std::span<const std::int64_t> node_tags,
                    std::span<const int> physical_groups);
+  /// Gives the element `tag` its vector; only volumes keep it. Throws when there is no such element.
+  void set_vector(std::int64_t tag, const Vec3d& vector);
 
   InputCursor& in;
+  VectorField& vectors;
   bool binary = false;
   bool swap = false;  ///< bytes of numbers stand in the other order than in memory
   MeshBuilder mesh;
@@ -49,9 +54,15 @@ class GmshFile {
  private:
   [[nodiscard]] std::string group_name(int dimension, int number) const;
   [[nodiscard]] std::int32_t region_of(int physical_group);
-  void add_to_group(int dimension, int number, std::span<const GlobalIndex> nodes);
+
+  struct Element {
+    std::int64_t tag;
+    std::optional<CellPlace> cell;  // none: of lower dimension
+  };
 
   std::map<int, std::int32_t> regions_;  // physical group of volumes → region
+  std::vector<Element> elements_;  // only where vectors are wanted; by rising tag once one was looked for
+  bool elements_sorted_ = false;
 };
 
 void read_gmsh2_nodes(GmshFile& file);
@@ -59,5 +70,7 @@ void read_gmsh2_elements(GmshFile& file);
 void read_gmsh4_entities(GmshFile& file);
 void read_gmsh4_nodes(GmshFile& file);
 void read_gmsh4_elements(GmshFile& file);
+/// The section up to its end mark when it is the field that is wanted; otherwise false, somewhere inside.
+[[nodiscard]] bool read_gmsh_element_data(GmshFile& file);
 
 }  // namespace evert

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace evert {
 namespace {
@@ -82,6 +83,7 @@ void skip_section(InputCursor& in, const std::string& end) {
 
 /// Reads the section called `name`, whose line has been passed, up to its end mark.
 void read_section(GmshFile& file, int version, std::string_view name) {
+  if (name == "ElementData" && read_gmsh_element_data(file)) return;
   if (name == "PhysicalNames") return read_physical_names(file);
   if (name == "Nodes") return version == 2 ? read_gmsh2_nodes(file) : read_gmsh4_nodes(file);
   if (name == "Elements") return version == 2 ? read_gmsh2_elements(file) : read_gmsh4_elements(file);
@@ -136,22 +138,33 @@ const GmshElementType& GmshFile::element_type(int id) const {
   return *found;
 }
 
-void GmshFile::add_element(const GmshElementType& type, std::span<const std::int64_t> node_tags,
-                           std::span<const int> physical_groups) {
+void GmshFile::add_element(std::int64_t tag, const GmshElementType& type,
+                           std::span<const std::int64_t> node_tags, std::span<const int> physical_groups) {
   std::array<GlobalIndex, 10> numbers{};
   const auto nodes = std::span(numbers).first(static_cast<std::size_t>(type.nodes));
-  std::ranges::transform(node_tags, nodes.begin(), [&](std::int64_t tag) { return tags.index_of(tag, in); });
+  std::optional<CellPlace> cell;
+  std::ranges::transform(node_tags, nodes.begin(),
+                         [&](std::int64_t node) { return tags.index_of(node, in); });
   if (type.cell == CellType::tet10)
     std::swap(nodes[8], nodes[9]);  // Gmsh: edges (2,3), (1,3); VTK: (1,3), (2,3)
   if (type.cell) {
-    mesh.add_cell(*type.cell, nodes, region_of(physical_groups.empty() ? 0 : physical_groups.front()));
+    cell = mesh.add_cell(*type.cell, nodes, region_of(physical_groups.empty() ? 0 : physical_groups.front()));
     if (!physical_groups.empty()) physical_groups = physical_groups.subspan(1);
   } else {
     mesh.count_lower_cell(type.name);
   }
+  if (vectors.wanted()) elements_.push_back({tag, cell});
   for (const int group : physical_groups) {
     if (group != 0) mesh.add_to_node_set(group_name(type.dimension, group), nodes);
   }
+}
+
+void GmshFile::set_vector(std::int64_t tag, const Vec3d& vector) {
+  if (!std::exchange(elements_sorted_, true)) std::ranges::stable_sort(elements_, {}, &Element::tag);
+  const auto found = std::ranges::lower_bound(elements_, tag, {}, &Element::tag);
+  if (found == elements_.end() || found->tag != tag)
+    in.fail("there is no element " + std::to_string(tag) + " that could have a vector");
+  if (found->cell) mesh.set_vector(*found->cell, vector);
 }
 
 std::string GmshFile::group_name(int dimension, int number) const {
@@ -168,8 +181,8 @@ std::int32_t GmshFile::region_of(int physical_group) {
   return region;
 }
 
-Mesh read_gmsh(InputCursor& in) {
-  GmshFile file(in);
+Mesh read_gmsh(InputCursor& in, VectorField& vectors) {
+  GmshFile file(in, vectors);
   const int version = read_format(file);
   bool has_nodes = false;
   bool has_elements = false;
@@ -179,6 +192,7 @@ Mesh read_gmsh(InputCursor& in) {
     const auto name = heading.substr(1);
     if ((name == "Nodes" && has_nodes) || (name == "Elements" && has_elements))
       in.fail("there is a second section $" + std::string(name));
+    if (name == "ElementData" && !has_elements) in.fail("the section $ElementData comes before $Elements");
     if (name == "Elements" && !has_nodes) in.fail("the section $Elements comes before $Nodes");
     in.rest_of_line();
     read_section(file, version, name);
@@ -189,6 +203,7 @@ Mesh read_gmsh(InputCursor& in) {
   }
   if (!has_nodes) in.fail("the file has no section $Nodes (truncated?)");
   if (!has_elements) in.fail("the file has no section $Elements (truncated?)");
+  vectors.expect_found(in.name());
   return std::move(file.mesh).finish(in.name());
 }
 

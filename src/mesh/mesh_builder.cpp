@@ -19,10 +19,18 @@ std::int32_t MeshBuilder::region(const std::string& name) {
   return entry->second;
 }
 
-void MeshBuilder::add_cell(CellType type, std::span<const GlobalIndex> nodes, std::int32_t region) {
+CellPlace MeshBuilder::add_cell(CellType type, std::span<const GlobalIndex> nodes, std::int32_t region) {
   auto& block = blocks_[static_cast<std::size_t>(type)];
   block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
   block.region.push_back(region);
+  return {type, block.region.size() - 1};
+}
+
+void MeshBuilder::set_vector(const CellPlace& cell, const Vec3d& vector) {
+  auto& vectors = blocks_[static_cast<std::size_t>(cell.type)].vectors;
+  if (vectors.size() <= cell.index) vectors.resize(cell.index + 1, Vec3d{});
+  vectors[cell.index] = vector;
+  has_vectors_ = true;
 }
 
 void MeshBuilder::add_to_node_set(const std::string& name, std::span<const GlobalIndex> nodes) {
@@ -36,6 +44,7 @@ Mesh MeshBuilder::finish(const std::string& file) && {
   for (const auto type : all_cell_types) {
     auto& block = blocks_[static_cast<std::size_t>(type)];
     block.type = type;
+    if (has_vectors_) block.vectors.resize(block.region.size(), Vec3d{});
     if (block.size() > 0) mesh_.cells.push_back(std::move(block));
   }
   if (mesh_.cells.empty()) {

@@ -84,7 +84,7 @@ void make_quadratic(Mesh& mesh) {
     mesh.nodes.push_back(0.5 *
                          (mesh.nodes[static_cast<std::size_t>(a)] + mesh.nodes[static_cast<std::size_t>(b)]));
   for (auto& set : mesh.node_sets) add_middles(set, edges, first_middle);
-  CellBlock quadratic{CellType::tet10, {}, block.region};
+  CellBlock quadratic{CellType::tet10, {}, block.region, block.vectors};
   quadratic.nodes.reserve(10 * block.region.size());
   for (std::size_t cell = 0; cell < block.region.size(); ++cell) {
     const auto tet = corners(block, cell);

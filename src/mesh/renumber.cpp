@@ -100,13 +100,14 @@ void sort_cells(LocalCells& cells, LocalIndex owned_nodes) {
            std::tie(b.touches_ghost, b.lowest_node, b.global_id);
   });
 
-  LocalCells sorted{.type = cells.type, .region = cells.region, .nodes = {}, .global_ids = {}, .interior = 0};
+  LocalCells sorted{.type = cells.type, .region = cells.region, .nodes = {}, .global_ids = {}};
   sorted.nodes.reserve(cells.nodes.size());
   sorted.global_ids.reserve(cells.global_ids.size());
   for (const auto& key : keys) {
     const auto nodes = std::span(cells.nodes).subspan(key.old * stride, stride);
     sorted.nodes.insert(sorted.nodes.end(), nodes.begin(), nodes.end());
     sorted.global_ids.push_back(key.global_id);
+    if (!cells.vectors.empty()) sorted.vectors.push_back(cells.vectors[key.old]);
     if (!key.touches_ghost) ++sorted.interior;
   }
   cells = std::move(sorted);

@@ -85,7 +85,7 @@ void Dealer::sort_cells_by_rank(const std::vector<int>& part, int ranks) {
     by_rank_[next[static_cast<std::size_t>(part[cell])]++] = static_cast<GlobalIndex>(cell);
 }
 
-/// visit(block, its nodes, region, number in the whole mesh)
+/// visit(block, its nodes, number in the block, number in the whole mesh)
 template <class Visit>
 void Dealer::for_each_cell_of(int rank, Visit&& visit) const {
   auto block = mesh_.cells.begin();
@@ -96,15 +96,14 @@ void Dealer::for_each_cell_of(int rank, Visit&& visit) const {
     while (cell >= first_of_block + block->size()) first_of_block += (block++)->size();
     const auto in_block = static_cast<std::size_t>(cell - first_of_block);
     const auto stride = static_cast<std::size_t>(node_count(block->type));
-    visit(block->type, std::span(block->nodes).subspan(in_block * stride, stride), block->region[in_block],
-          cell);
+    visit(*block, std::span(block->nodes).subspan(in_block * stride, stride), in_block, cell);
   }
 }
 
 /// The nodes of the rank's cells in the order of the share; fills slot_ for them.
 std::vector<GlobalIndex> Dealer::nodes_of(int rank) {
   std::vector<GlobalIndex> nodes;
-  for_each_cell_of(rank, [&](CellType, std::span<const GlobalIndex> cell, std::int32_t, GlobalIndex) {
+  for_each_cell_of(rank, [&](const CellBlock&, std::span<const GlobalIndex> cell, std::size_t, GlobalIndex) {
     for (const auto node : cell)
       if (std::exchange(slot_[static_cast<std::size_t>(node)], 0) < 0) nodes.push_back(node);
   });
@@ -129,12 +128,14 @@ Share Dealer::share_of(int rank) {
     share.cells.back().type = type;
     share.cells.back().region = region;
   }
-  for_each_cell_of(rank, [&](CellType type, std::span<const GlobalIndex> cell, std::int32_t region,
+  for_each_cell_of(rank, [&](const CellBlock& block, std::span<const GlobalIndex> cell, std::size_t in_block,
                              GlobalIndex number) {
-    const auto list = std::lower_bound(outline_.lists.begin(), outline_.lists.end(), std::pair(type, region));
+    const auto list = std::lower_bound(outline_.lists.begin(), outline_.lists.end(),
+                                       std::pair(block.type, block.region[in_block]));
     auto& cells = share.cells[static_cast<std::size_t>(list - outline_.lists.begin())];
     for (const auto node : cell) cells.nodes.push_back(slot_[static_cast<std::size_t>(node)]);
     cells.global_ids.push_back(number);
+    if (!block.vectors.empty()) cells.vectors.push_back(block.vectors[in_block]);
   });
   for (const auto& set : mesh_.node_sets) {
     share.node_sets.push_back({set.name, {}});
@@ -151,6 +152,7 @@ void send_share(MPI_Comm comm, int to, const Share& share) {
   for (const auto& cells : share.cells) {
     send(comm, to, cells.nodes);
     send(comm, to, cells.global_ids);
+    send(comm, to, cells.vectors);
   }
   for (const auto& set : share.node_sets) send(comm, to, set.owned);
 }
@@ -161,7 +163,8 @@ Share receive_share(MPI_Comm comm, const Outline& outline) {
   for (const auto& [type, region] : outline.lists) {
     auto nodes = receive<LocalIndex>(comm, 0);
     auto global_ids = receive<GlobalIndex>(comm, 0);
-    share.cells.push_back({type, region, std::move(nodes), std::move(global_ids), 0});
+    auto vectors = receive<Vec3d>(comm, 0);
+    share.cells.push_back({type, region, std::move(nodes), std::move(global_ids), std::move(vectors), 0});
   }
   for (const auto& name : outline.node_sets) share.node_sets.push_back({name, receive<LocalIndex>(comm, 0)});
   return share;

@@ -73,6 +73,9 @@ class Assembly {
     if (!grid_.regions.empty() && grid_.regions.size() != cells)
       in_.fail_at(grid_.types_position, "there are " + std::to_string(cells) + " cells, but " +
                                             std::to_string(grid_.regions.size()) + " numbers of regions");
+    if (!grid_.vectors.empty() && grid_.vectors.size() != cells)
+      in_.fail_at(grid_.types_position, "there are " + std::to_string(cells) + " cells, but " +
+                                            std::to_string(grid_.vectors.size()) + " vectors");
   }
 
   void add_cell(std::size_t cell, std::span<const std::int64_t> points) {
@@ -99,7 +102,9 @@ class Assembly {
       std::swap(nodes[2], nodes[3]);
       std::swap(nodes[6], nodes[7]);
     }
-    mesh_.add_cell(*type.cell, std::span(nodes).first(points.size()), mesh_.region(region_name(cell)));
+    const auto place =
+        mesh_.add_cell(*type.cell, std::span(nodes).first(points.size()), mesh_.region(region_name(cell)));
+    if (!grid_.vectors.empty()) mesh_.set_vector(place, grid_.vectors[cell]);
   }
 
   [[nodiscard]] const VtkCellType& type_of(std::size_t cell) const {

@@ -30,6 +30,7 @@ struct VtkGrid {
   std::vector<std::int64_t> ends;          ///< per cell: end of its points in `connectivity`
   std::vector<std::int64_t> types;         ///< per cell: VTK's number
   std::vector<std::int64_t> regions;       ///< per cell, or empty
+  std::vector<Vec3d> vectors;              ///< per cell, or empty: those that are wanted
   std::vector<std::string> region_names;   ///< of regions 0, 1, ..., or empty
   std::vector<std::pair<std::string, std::vector<std::int64_t>>>
       node_sets;  ///< name and a number per point, ≠ 0: in

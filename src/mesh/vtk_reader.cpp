@@ -32,7 +32,7 @@ std::string decoded(std::string_view text) {
 
 class VtkReader {
  public:
-  explicit VtkReader(InputCursor& in) : in_(in) {}
+  VtkReader(InputCursor& in, VectorField& vectors) : in_(in), vectors_(vectors) {}
 
   Mesh read() {
     read_header();
@@ -43,6 +43,7 @@ class VtkReader {
                 : !has_cells_ ? "CELLS"
                               : "CELL_TYPES") +
                " (truncated?)");
+    vectors_.expect_found(in_.name());
     return mesh_of(grid_, in_);
   }
 
@@ -282,9 +283,19 @@ class VtkReader {
     } else if (numbers && owner_ == Owner::points && name.starts_with(node_set_prefix)) {
       grid_.node_sets.emplace_back(name.substr(node_set_prefix.size()),
                                    integers(type, tuples, "a mark of a node"));
+    } else if (owner_ == Owner::cells && !vectors_.found() && vectors_.meet(name, components, in_)) {
+      read_vectors(type, tuples);
     } else {
       skip_array(type, components, tuples);
     }
+  }
+
+  void read_vectors(const VtkNumberType& type, GlobalIndex tuples) {
+    in_.plausible_count(tuples, "the number of vectors", 3 * bytes_of(type));
+    grid_.vectors.resize(static_cast<std::size_t>(tuples));
+    for (auto& vector : grid_.vectors)
+      for (auto& component : vector.components)
+        component = read_real(in_, type, binary_, swap_, "a component of a vector");
   }
 
   void skip_array(const VtkNumberType& type, GlobalIndex components, GlobalIndex tuples) {
@@ -300,6 +311,7 @@ class VtkReader {
   }
 
   InputCursor& in_;
+  VectorField& vectors_;
   VtkGrid grid_;
   double version_ = 0;
   bool binary_ = false;
@@ -313,6 +325,6 @@ class VtkReader {
 
 }  // namespace
 
-Mesh read_vtk(InputCursor& in) { return VtkReader(in).read(); }
+Mesh read_vtk(InputCursor& in, VectorField& vectors) { return VtkReader(in, vectors).read(); }
 
 }  // namespace evert

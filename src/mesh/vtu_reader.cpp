@@ -24,7 +24,7 @@ struct Piece {
 
 class VtuReader {
  public:
-  explicit VtuReader(InputCursor& in) : in_(in), scanner_(in) {}
+  VtuReader(InputCursor& in, VectorField& vectors) : in_(in), vectors_(vectors), scanner_(in) {}
 
   Mesh read() {
     scan();
@@ -33,6 +33,7 @@ class VtuReader {
         grid_.region_names = vtu_strings(array, encoding_, in_);
     for (const auto& piece : pieces_) add(piece);
     if (pieces_.empty()) in_.fail_at(0, "the file has no <Piece>");
+    vectors_.expect_found(in_.name());
     return mesh_of(grid_, in_);
   }
 
@@ -158,6 +159,7 @@ class VtuReader {
     grid_.types.insert(grid_.types.end(), numbers.begin(), numbers.end());
 
     add_regions(piece, first_cell);
+    if (vectors_.wanted()) add_vectors(piece);
     add_node_sets(piece, static_cast<std::size_t>(first_point));
   }
 
@@ -189,6 +191,19 @@ class VtuReader {
     grid_.regions.insert(grid_.regions.end(), regions.begin(), regions.end());
   }
 
+  /// Pieces without the field leave their cells without vectors: mesh_of counts them.
+  void add_vectors(const Piece& piece) {
+    for (const auto& array : piece.cell_data) {
+      const auto components = array.tag.attribute("NumberOfComponents", "1");
+      if (!vectors_.meet(array.tag.attribute("Name"), components == "3" ? 3 : 1, in_)) continue;
+      const auto values = vtu_reals(array, encoding_, in_, "a component of a vector");
+      expect(array, values.size(), 3 * piece.cells);
+      for (std::size_t i = 0; i < values.size(); i += 3)
+        grid_.vectors.push_back({values[i], values[i + 1], values[i + 2]});
+      return;
+    }
+  }
+
   void add_node_sets(const Piece& piece, std::size_t first_point) {
     for (const auto& array : piece.point_data) {
       const auto name = array.tag.attribute("Name");
@@ -202,6 +217,7 @@ class VtuReader {
   }
 
   InputCursor& in_;
+  VectorField& vectors_;
   XmlScanner scanner_;
   VtuEncoding encoding_;
   std::vector<VtuArray> field_data_;
@@ -211,6 +227,6 @@ class VtuReader {
 
 }  // namespace
 
-Mesh read_vtu(InputCursor& in) { return VtuReader(in).read(); }
+Mesh read_vtu(InputCursor& in, VectorField& vectors) { return VtuReader(in, vectors).read(); }
 
 }  // namespace evert

@@ -21,6 +21,7 @@ struct LocalCells {
   std::int32_t region = 0;              ///< index into DistributedMesh::regions
   std::vector<LocalIndex> nodes;        ///< local numbers, node_count(type) per cell
   std::vector<GlobalIndex> global_ids;  ///< numbers in the undistributed mesh, all blocks in order
+  std::vector<Vec3d> vectors{};         ///< per cell, or empty: those of CellBlock::vectors
   LocalIndex interior = 0;              ///< cells [0, interior) touch no ghost
 
   [[nodiscard]] LocalIndex size() const { return static_cast<LocalIndex>(global_ids.size()); }

@@ -27,6 +27,7 @@ struct CellBlock {
   CellType type = CellType::tet4;
   std::vector<GlobalIndex> nodes;    ///< node_count(type) per cell, VTK order
   std::vector<std::int32_t> region;  ///< per cell: index into Mesh::regions
+  std::vector<Vec3d> vectors{};      ///< per cell, or empty: a field of vectors, e.g. where fibres run to
 
   [[nodiscard]] GlobalIndex size() const { return static_cast<GlobalIndex>(region.size()); }
 };

@@ -2,6 +2,7 @@
 #include "evert/mesh/mesh.hpp"
 
 #include <filesystem>
+#include <string_view>
 
 namespace evert {
 
@@ -21,9 +22,14 @@ namespace evert {
 ///   on.
 /// - TetGen: the first attribute as "region_<number>"; boundary markers other than 0 as "marker_<number>".
 ///
+/// `cell_vectors`, unless it is "", names a cell field of vectors to be read into CellBlock::vectors: an
+/// $ElementData of Gmsh with 3 components (its first time step; cells that it leaves out have the vector 0)
+/// or a cell array of VTK with 3 components. Medit and TetGen files have none.
+///
 /// Cells of negative volume are kept as they are, and so are unused nodes: see repair.hpp. Not collective; no
 /// PETSc. Throws UserError, naming the line, or the byte in binary files, when the file is missing, cannot be
-/// read, is cut short or makes no sense, or holds no volume cells.
-[[nodiscard]] Mesh read_mesh(const std::filesystem::path& path);
+/// read, is cut short or makes no sense, or holds no volume cells or no
+/// such field.
+[[nodiscard]] Mesh read_mesh(const std::filesystem::path& path, std::string_view cell_vectors = {});
 
 }  // namespace evert

@@ -99,6 +99,28 @@ TEST(Distribute, GivesEveryCellToOneRankUnchanged) {
   }
 }
 
+/// A vector that says which cell it belongs to.
+Vec3d vector_of(GlobalIndex cell) {
+  return {static_cast<double>(cell), 0.5, -1.0 / static_cast<double>(cell + 1)};
+}
+
+TEST(Distribute, SendsTheVectorOfACellWithIt) {
+  auto all = cases();
+  for (auto& [name, mesh, partitioner] : all) {
+    SCOPED_TRACE(name);
+    for (const auto& cells : distribute_from_root(mesh, partitioner).cells)
+      EXPECT_TRUE(cells.vectors.empty()) << "there are none";
+    GlobalIndex number = 0;
+    for (auto& block : mesh.cells)
+      for (GlobalIndex i = 0; i < block.size(); ++i) block.vectors.push_back(vector_of(number++));
+    for (const auto& cells : distribute_from_root(mesh, partitioner).cells) {
+      ASSERT_EQ(cells.vectors.size(), cells.global_ids.size());
+      for (std::size_t i = 0; i < cells.vectors.size(); ++i)
+        EXPECT_EQ(cells.vectors[i], vector_of(cells.global_ids[i]));
+    }
+  }
+}
+
 TEST(Distribute, ListsTheSameCellListsEverywhere) {
   const auto mesh = test::mixed_row(6);
   const auto part = distribute_from_root(mesh);
