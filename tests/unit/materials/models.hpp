@@ -11,14 +11,17 @@
 /// Every model with its defaults, and the stretches at which models are looked at.
 namespace evert::test {
 
-template <class Variant>
-struct TypesOf;
-template <class... Models>
-struct TypesOf<std::variant<Models...>> {
-  using Types = testing::Types<Models...>;
+/// The models of `Variant` that are functions of the principal stretches alone, behind `Found`.
+template <class Variant, class... Found>
+struct IsotropicOf {
+  using Types = testing::Types<Found...>;
 };
-/// A model joins every suite by joining the variant.
-using Models = TypesOf<Material>::Types;
+template <class First, class... Rest, class... Found>
+struct IsotropicOf<std::variant<First, Rest...>, Found...>
+    : std::conditional_t<HasFibres<First>, IsotropicOf<std::variant<Rest...>, Found...>,
+                         IsotropicOf<std::variant<Rest...>, Found..., First>> {};
+/// A model joins every suite by joining the variant; those with fibres have theirs in test_fibres.cpp.
+using Models = IsotropicOf<Material>::Types;
 
 inline constexpr Lame firm = Lame::from_young_poisson(1e5, 0.4);
 
