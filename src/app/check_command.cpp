@@ -37,11 +37,26 @@ std::string duration_text(double seconds) {
 }
 
 std::string material_text(const MaterialConfig& material) {
-  const auto model = name_of(material.model);
+  auto model = name_of(material.model);
+  if (material.peak_stress) model += formatted(", peak stress %g Pa", *material.peak_stress);
   if (material.youngs_modulus)
     return model + formatted(", E %g Pa, nu %g", *material.youngs_modulus, *material.poissons_ratio);
   const Lame lame = lame_of(material);
   return model + formatted(", lambda %g Pa, mu %g Pa", lame.lambda, lame.mu);
+}
+
+std::string fibre_text(const FibreConfig& fibres) {
+  if (const auto* constant = std::get_if<ConstantFibres>(&fibres))
+    return "fibres along " + vector_text(constant->direction);
+  if (const auto* field = std::get_if<FieldFibres>(&fibres))
+    return "fibres by the field '" + field->field + "' of the mesh file";
+  return formatted("fibres along a curve of %zu points", std::get<CurveFibres>(fibres).curve.size());
+}
+
+std::string activation_text(const ActivationConfig& keys) {
+  if (keys.size() == 1) return formatted("activation %g", keys.front().value);
+  return formatted("activation from %g at %g s to %g at %g s, %zu times in all", keys.front().value,
+                   keys.front().time, keys.back().value, keys.back().time, keys.size());
 }
 
 std::string damping_text(const std::optional<DampingConfig>& damping) {
@@ -79,11 +94,14 @@ void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& b
     report.line("bodies", formatted("  density %g kg/m^3, ", body.density) + material_text(body.material) +
                               ", " + damping_text(body.damping) +
                               (body.precision == Precision::mixed ? ", mixed precision" : ""));
+    if (body.fibres) report.line("bodies", "  " + fibre_text(*body.fibres));
+    if (body.activation) report.line("bodies", "  " + activation_text(*body.activation));
     for (const auto& group : body.groups)
       report.line("bodies", "  " + group.name + ": " +
                                 formatted("density %g kg/m^3, ", group.density.value_or(body.density)) +
                                 material_text(group.material.value_or(body.material)) + ", " +
-                                damping_text(group.damping ? group.damping : body.damping));
+                                damping_text(group.damping ? group.damping : body.damping) +
+                                (group.activation ? ", " + activation_text(*group.activation) : ""));
   }
   for (const auto& cells : mesh.cells)
     if (cells.size() > 0)

@@ -1,6 +1,5 @@
 #include "material_plot.hpp"
 
-#include "material_paths.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +16,7 @@ std::string formatted(const char* format, Values... values) {
   return text.data();
 }
 
-constexpr std::array colours{"#2d6ca8", "#c8362b", "#3f8f5b", "#8a5fb0"};
+constexpr std::array colours{"#2d6ca8", "#c8362b", "#3f8f5b", "#8a5fb0", "#c78a1e"};
 constexpr int points = 200;
 constexpr double panel_width = 330, panel_height = 250, left = 48, right = 10, top = 26, bottom = 36;
 constexpr double legend_height = 62;
@@ -89,13 +88,13 @@ std::vector<double> limits_of(const Material& material) {
 }
 
 /// Dashed where several stretches are negative, which no element sees.
-std::string curve(const Panel& panel, const Material& material, const PathInfo& info, const char* colour,
+std::string curve(const Panel& panel, const PointMaterial& at, const PathInfo& info, const char* colour,
                   double from, double to) {
   const bool dashes = info.path == DeformationPath::biaxial || info.path == DeformationPath::volumetric;
   std::array<std::string, 2> parts;  // from 0 on, and below
   for (int i = 0; i <= points; ++i) {
     const double s = from + (to - from) * i / points;
-    const double stress = leading_stress(info.path, response_on_path(material, info.path, s));
+    const double stress = leading_stress(info.path, response_on_path(at, info.path, s));
     if (!std::isfinite(stress)) continue;
     auto& part = parts[dashes && s < 0 ? 1 : 0];
     // Far outside the panel some programs lose their way.
@@ -112,11 +111,11 @@ std::string curve(const Panel& panel, const Material& material, const PathInfo& 
 }
 
 /// The stress to show: all of the uniaxial curve, and 0. The others may leave the panel.
-std::array<double, 2> stress_range(const Material& material, double from, double to) {
+std::array<double, 2> stress_range(const PointMaterial& at, double from, double to) {
   std::array<double, 2> range{0, 0};
   for (int i = 0; i <= points; ++i) {
     const double s = from + (to - from) * i / points;
-    const double stress = response_on_path(material, DeformationPath::uniaxial, s).stress(0, 0);
+    const double stress = response_on_path(at, DeformationPath::uniaxial, s).stress(0, 0);
     if (!std::isfinite(stress)) continue;
     range = {std::min(range[0], stress), std::max(range[1], stress)};
   }
@@ -127,46 +126,57 @@ std::array<double, 2> stress_range(const Material& material, double from, double
 
 std::string panel_of(const PlottedMaterial& plotted, std::size_t number, double x, double y, double from,
                      double to) {
-  const auto [low, high] = stress_range(plotted.material, from, to);
+  const auto [low, high] = stress_range(plotted.point, from, to);
   const Panel panel(x, y, from, to, low, high);
   std::string out = panel.clip(number) + panel.grid();
-  for (const double limit : limits_of(plotted.material))
+  for (const double limit : limits_of(plotted.point.material))
     if (limit > from && limit < to)
       out += panel.line(limit, low, limit, high, "stroke=\"#b07d2b\" stroke-dasharray=\"5 3\"");
   out += formatted("<g clip-path=\"url(#c%zu)\">\n", number);
-  const auto paths = all_paths();
+  const auto paths = paths_of(plotted.point.material);
   for (std::size_t i = 0; i < paths.size(); ++i)
-    out += curve(panel, plotted.material, paths[i], colours[i], from, to);
+    out += curve(panel, plotted.point, paths[i], colours[i], from, to);
   return out + "</g>\n" +
          panel.text(panel.x(0.5 * (from + to)), panel.y(high) - 8, "middle",
                     "<tspan font-weight=\"bold\">" + plotted.title + "</tspan>");
 }
 
-/// Two rows below the panels.
-std::string legend(double y) {
-  struct Entry {
-    std::string colour, dashes, words;
-  };
-  std::vector<Entry> entries;
-  const auto paths = all_paths();
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    entries.push_back(
-        {colours[i], "",
-         paths[i].path == DeformationPath::shear ? "shear: P_xy, s = 1 + gamma" : paths[i].name});
-  entries.push_back({"#444", "2 4", "several stretches negative"});
-  entries.push_back({"#b07d2b", "5 3", "limits of the model"});
+/// Three rows below the panels, for these paths.
+std::string legend(double y, std::span<const PathInfo> paths) {
   std::string out;
-  const std::array columns{left, left + 90, left + 180, left + 285};
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const double ex = i < 3 ? columns[i] : i == 3 ? left : i == 4 ? left : left + 200;
-    const double ey = y + (i < 3 ? 10 : i == 3 ? 28 : 46);
+  const auto entry = [&](double column, double row, const char* colour, const char* dashes,
+                         const std::string& words) {
+    const double ex = left + column, ey = y + 10 + 18 * row;
     out += formatted(
         "<path d=\"M%.1f,%.1fh22\" stroke=\"%s\" stroke-width=\"1.8\" stroke-dasharray=\"%s\"/>\n"
         "<text x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-        ex, ey, entries[i].colour.c_str(), entries[i].dashes.c_str(), ex + 27, ey + 4,
-        entries[i].words.c_str());
+        ex, ey, colour, dashes, ex + 27, ey + 4, words.c_str());
+  };
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    switch (paths[i].path) {
+      case DeformationPath::shear:
+        entry(0, 1, colours[i], "", "shear: P_xy, s = 1 + gamma");
+        break;
+      case DeformationPath::across:
+        entry(200, 1, colours[i], "", "across fibres");
+        break;
+      default:
+        entry(90 * static_cast<double>(i), 0, colours[i], "", paths[i].name);
+    }
   }
+  entry(0, 2, "#444", "2 4", "several stretches negative");
+  entry(200, 2, "#b07d2b", "5 3", "limits of the model");
   return out;
+}
+
+/// Those of the material that has most.
+std::span<const PathInfo> all_paths(const std::vector<PlottedMaterial>& materials) {
+  std::span<const PathInfo> most;
+  for (const auto& plotted : materials) {
+    const auto paths = paths_of(plotted.point.material);
+    if (paths.size() > most.size()) most = paths;
+  }
+  return most;
 }
 
 }  // namespace
@@ -185,7 +195,7 @@ std::string stress_plot(const std::vector<PlottedMaterial>& materials, double fr
                     panel_height * static_cast<double>(i / columns), from, to);
   out += formatted("<text x=\"%g\" y=\"%g\">first Piola-Kirchhoff stress [Pa] over stretch s</text>\n", left,
                    below + 4);
-  return out + legend(below + 14) + "</svg>\n";
+  return out + legend(below + 14, all_paths(materials)) + "</svg>\n";
 }
 
 }  // namespace evert

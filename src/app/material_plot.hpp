@@ -1,6 +1,5 @@
 #pragma once
-#include "evert/materials/material.hpp"
-
+#include "material_paths.hpp"
 #include <string>
 #include <vector>
 
@@ -9,7 +8,7 @@ namespace evert {
 /// One panel of the plot.
 struct PlottedMaterial {
   std::string title;
-  Material material;
+  PointMaterial point;
 };
 
 /// An SVG page: stress over stretch of each material along every path from `from` to `to`, one panel each.

@@ -74,6 +74,12 @@ class Counted {
     so_far().divisions += 1;
     return std::log(x.value_);
   }
+  /// As many as evert::exp of a pack takes.
+  friend Counted exp(const Counted& x) {
+    constexpr double operations_of_exp = 34;
+    so_far().flops += operations_of_exp;
+    return std::exp(x.value_);
+  }
   friend Counted abs(const Counted& x) { return std::abs(x.value_); }
   friend Counted min(const Counted& a, const Counted& b) { return b < a ? b : a; }
   friend Counted max(const Counted& a, const Counted& b) { return b > a ? b : a; }

@@ -67,6 +67,7 @@ BatchedBlock::BatchedBlock(const ElementView& element, const ElasticCells& cells
     const LocalIndex cell = element_block_.cell_of_lane[slot];
     if (cell >= 0) lane_of_cell_[static_cast<std::size_t>(cell)] = static_cast<LocalIndex>(slot);
   }
+  if (kernels.fibres) set_fibres(element_block_, cells.fibres, rest_positions, kernels.precision);
   point_kernels_at_memory();
 }
 
@@ -74,7 +75,7 @@ void BatchedBlock::point_kernels_at_memory() {
   arrays_ = {element_block_.nodes.data(),    element_block_.shapes.data(),
              element_block_.volumes.data(),  element_block_.cell_of_lane.data(),
              rest_stiffness_.largest.data(), rest_stiffness_.spin.data(),
-             damping_state_.data()};
+             damping_state_.data(),          element_block_.fibres.data()};
 }
 
 void BatchedBlock::update(const double* x, double* f, BatchRange batches) {
@@ -156,8 +157,8 @@ void BatchedBlock::set_mass_shares(std::span<const double> shares) {
 
 std::size_t BatchedBlock::memory() const {
   return bytes(element_block_.nodes) + element_block_.shapes.bytes() + element_block_.volumes.bytes() +
-         bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) + bytes(rest_stiffness_.spin) +
-         damping_state_.bytes() + bytes(lane_of_cell_);
+         element_block_.fibres.bytes() + bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) +
+         bytes(rest_stiffness_.spin) + damping_state_.bytes() + bytes(lane_of_cell_);
 }
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElementView& element, const ElasticCells& cells,

@@ -35,6 +35,7 @@ class BatchedBlock final : public ElasticBlock {
   [[nodiscard]] double rest_stiffness_of(LocalIndex cell) const override;
   void set_mass_shares(std::span<const double> shares) override;
   void set_material(const Material& material, const Damping& damping) override;
+  void set_activation(double activation) override { evert::set_activation(material_, activation); }
   [[nodiscard]] std::size_t memory() const override;
 
  private:

@@ -16,7 +16,7 @@ constexpr double force_flops = 560;
 constexpr double damping_flops = 125;
 
 ElasticCells cells_of(const LocalCells& cells, double density) {
-  return {cells.type, cells.nodes, cells.interior, density};
+  return {cells.type, cells.nodes, cells.interior, density, cells.vectors};
 }
 
 BatchRange first_half(BatchRange range) { return {range.begin, range.begin + (range.end - range.begin) / 2}; }
@@ -157,6 +157,11 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
     if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
       blocks_[i]->set_material(properties.material, properties.damping);
   balance_masses(mesh_, halo_, masses_, blocks_);
+}
+
+void ElasticForces::set_activation(std::int32_t region, double activation) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    if (blocks_[i] != nullptr && mesh_.cells[i].region == region) blocks_[i]->set_activation(activation);
 }
 
 std::size_t ElasticForces::memory() const {

@@ -5,14 +5,6 @@
 #include <limits>
 
 namespace evert {
-namespace {
-
-// The bound moves with the strain, and strain by at most max_strain_increment in a step: a few steps old, it
-// is still within what `safety` covers.
-constexpr int steps_between_estimates = 4;
-
-}  // namespace
-
 double TimeStepControl::suggest(System& system) {
   system.elastic.halo().begin_update(system.v);
   system.elastic.halo().end_update(system.v);

@@ -2,10 +2,10 @@
 
 #include "evert/mesh/mesh_reader.hpp"
 
+#include <type_traits>
+
 namespace evert {
 namespace {
-
-Mesh make(const FileMesh& file) { return read_mesh(file.path); }
 
 Mesh make(const BoxMesh& box) {
   auto mesh = box.edge_length > 0 ? generate_box(box.size, box.edge_length, box.cell)
@@ -23,8 +23,16 @@ Mesh make(const EllipsoidMesh& m) { return generate(ellipsoid(m.radii), m.edge_l
 
 }  // namespace
 
-Mesh make_body_mesh(const MeshConfig& mesh) {
-  return std::visit([](const auto& source) { return make(source); }, mesh);
+Mesh make_body_mesh(const MeshConfig& mesh, std::string_view cell_vectors) {
+  return std::visit(
+      [&]<class Source>(const Source& source) {
+        if constexpr (std::is_same_v<Source, FileMesh>) {
+          return read_mesh(source.path, cell_vectors);
+        } else {
+          return make(source);
+        }
+      },
+      mesh);
 }
 
 }  // namespace evert

@@ -74,7 +74,9 @@ const Table<GroupConfig>& group_table() {
                     "{model: neo_hookean, youngs_modulus: 1e6, poissons_ratio: 0.4}", "Elastic model.")
           .optional("damping", &GroupConfig::damping, table_of(damping_table()),
                     "{model: rotated, stiffness_proportional: 0.01}",
-                    "Damping; {model: none} for a group without.");
+                    "Damping; {model: none} for a group without.")
+          .optional("activation", &GroupConfig::activation, activation_type(), "[[0, 0], [0.5, 1]]",
+                    "Of its muscle.");
   return table;
 }
 
@@ -119,6 +121,12 @@ const Table<BodyConfig>& body_table() {
                     "{model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.45}", "Elastic model.")
           .optional("damping", &BodyConfig::damping, table_of(damping_table()),
                     "{model: rotated, stiffness_proportional: 0.001}", "Without it the body is not damped.")
+          .optional("fibres", &BodyConfig::fibres, table_of(fibre_table()), "{direction: [1, 0, 0]}",
+                    "Where the fibres of muscle and tendon run at rest; needed there, and there only.")
+          .optional(
+              "activation", &BodyConfig::activation, activation_type(), "[[0, 0], [0.5, 1]]",
+              "Of muscle: a constant from 0 to 1, or a table of times and values, linear in between and "
+              "constant outside. Without it muscle is not active.")
           .optional("precision", &BodyConfig::precision,
                     one_of<Precision>({{"double", Precision::full, "everything in double"},
                                        {"mixed", Precision::mixed,
@@ -128,7 +136,8 @@ const Table<BodyConfig>& body_table() {
                     "double", "Of the forces of its elements.")
           .optional("groups", &BodyConfig::groups, named(group_table()), "{tendon: {density: 1200}}",
                     "Volume groups of the mesh that differ from the body, by name.")
-          .then(drop_what_is_none);
+          .then(drop_what_is_none)
+          .then(check_fibres);
   return table;
 }
 

@@ -105,6 +105,22 @@ TimedEvent timed_event(const EventConfig& event, const std::shared_ptr<SceneConf
           }};
 }
 
+/// Of the muscle in each region that has a say in it.
+std::vector<Activation> activations_of(const SceneConfig& scene, std::span<const int> region_body,
+                                       std::span<const int> region_group) {
+  std::vector<Activation> all;
+  for (std::size_t r = 0; r < region_body.size(); ++r) {
+    const auto& body = scene.bodies[static_cast<std::size_t>(region_body[r])];
+    const auto* group =
+        region_group[r] < 0 ? nullptr : &body.groups[static_cast<std::size_t>(region_group[r])];
+    const auto& keys = group != nullptr && group->activation ? group->activation : body.activation;
+    if (!keys || !std::holds_alternative<Muscle>(properties_of(body, region_group[r]).material)) continue;
+    all.push_back({static_cast<std::int32_t>(r), {}});
+    for (const auto& key : *keys) all.back().keyframes.push_back({key.time, key.value});
+  }
+  return all;
+}
+
 void broadcast(MPI_Comm comm, std::vector<int>& values) {
   int size = static_cast<int>(values.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
@@ -159,6 +175,7 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
   for (const auto& obstacle : scene.obstacles) definition.obstacles.push_back(obstacle_of(obstacle));
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
     definition.prescribed.push_back(prescribed_of(scene.constraints[c], mesh.node_sets[c]));
+  definition.activations = activations_of(scene, whole.region_body, whole.region_group);
   const auto changing = std::make_shared<SceneConfig>(scene);
   for (const auto& event : scene.events)
     definition.events.push_back(timed_event(event, changing, whole.region_body, whole.region_group));

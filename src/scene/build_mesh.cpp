@@ -4,6 +4,7 @@
 #include "evert/scene/body_mesh.hpp"
 #include "evert/scene/build.hpp"
 
+#include "fibres.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,6 +46,8 @@ void place(Mesh& mesh, const TransformConfig& transform) {
   const auto center = transform.fit ? 0.5 * (bounds.lower + bounds.upper) : Vec3d{};
   const double fit = transform.fit ? *transform.fit / std::max({size[0], size[1], size[2]}) : 1;
   const auto turn = transform.rotate ? rotation(*transform.rotate) : identity<double>();
+  for (auto& block : mesh.cells)
+    for (auto& vector : block.vectors) vector = turn * vector;
   for (auto& node : mesh.nodes) node = turn * (transform.scale * fit * (node - center)) + transform.translate;
 }
 
@@ -91,6 +94,7 @@ void keep_groups(Mesh& mesh, const std::vector<std::string>& groups, const std::
     for (std::size_t cell = 0; cell < block.region.size(); ++cell) {
       if (!kept[static_cast<std::size_t>(block.region[cell])]) continue;
       filtered.region.push_back(block.region[cell]);
+      if (!block.vectors.empty()) filtered.vectors.push_back(block.vectors[cell]);
       filtered.nodes.insert(filtered.nodes.end(), &block.nodes[cell * n], &block.nodes[cell * n] + n);
     }
     block = std::move(filtered);
@@ -98,8 +102,14 @@ void keep_groups(Mesh& mesh, const std::vector<std::string>& groups, const std::
   std::erase_if(mesh.cells, [](const CellBlock& block) { return block.region.empty(); });
 }
 
+/// The cell field that the mesh file must hold; "" for none.
+std::string fibre_field(const BodyConfig& body) {
+  const auto* field = body.fibres ? std::get_if<FieldFibres>(&*body.fibres) : nullptr;
+  return field == nullptr ? "" : field->field;
+}
+
 Mesh body_mesh(const BodyConfig& body) {
-  Mesh mesh = make_body_mesh(body.mesh);
+  Mesh mesh = make_body_mesh(body.mesh, fibre_field(body));
   if (const auto* file = std::get_if<FileMesh>(&body.mesh)) keep_groups(mesh, file->groups, body.name);
   drop_unused_nodes(mesh);
   if (mesh.cell_count() == 0) throw UserError("bodies." + body.name + ".mesh: no volume cell is left");
@@ -128,6 +138,15 @@ std::vector<int> groups_of_regions(const BodyConfig& body, const Mesh& mesh) {
   return groups;
 }
 
+/// Gives the cells of materials with fibres their directions.
+void set_fibre_directions(Mesh& mesh, const BodyConfig& body) {
+  if (!body.fibres) return;
+  std::vector<bool> with_fibres;
+  for (const int group : groups_of_regions(body, mesh))
+    with_fibres.push_back(has_fibres(properties_of(body, group).material));
+  set_fibre_directions(mesh, body, with_fibres);
+}
+
 /// Joins one body to the scene: nodes appended, cells into the block of their type, regions by material.
 void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig& body) {
   const auto groups = groups_of_regions(body, part);
@@ -151,9 +170,13 @@ void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig
         std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.type >= block.type; });
     if (place_of == all.end() || place_of->type != block.type)
       place_of = all.insert(place_of, {block.type, {}, {}});
+    // Cells of bodies without fibres have the vector 0.
+    if (!block.vectors.empty()) place_of->vectors.resize(place_of->region.size(), Vec3d{});
+    place_of->vectors.insert(place_of->vectors.end(), block.vectors.begin(), block.vectors.end());
     for (const auto node : block.nodes) place_of->nodes.push_back(first + node);
     for (const auto own : block.region)
       place_of->region.push_back(region(groups[static_cast<std::size_t>(own)]));
+    if (!place_of->vectors.empty()) place_of->vectors.resize(place_of->region.size(), Vec3d{});
   }
 }
 
@@ -197,7 +220,8 @@ SceneMesh build_scene_mesh(const SceneConfig& scene) {
   all.mesh.node_sets.resize(scene.constraints.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
-    const auto part = body_mesh(body);
+    auto part = body_mesh(body);
+    set_fibre_directions(part, body);
     const auto first = all.mesh.node_count();
     append(all, part, static_cast<int>(b), body);
     const auto bounds = bounds_of(part.nodes);

@@ -19,6 +19,26 @@ Spline spline_of(const MaterialConfig& config) {
           config.elongation_stiffening.value_or(Spline::default_stiffening)};
 }
 
+/// What muscle and tendon have in common.
+template <class Model>
+Model fibrous_of(const MaterialConfig& config) {
+  const PassiveCurve curve;
+  Model model{.lame = lame_of(config),
+              .share_01 = mooney_rivlin_of(config).share_01,
+              .compression_limit = config.compression_limit.value_or(Model::default_compression_limit),
+              .peak_stress = config.peak_stress.value_or(Model::default_peak_stress)};
+  model.passive = {config.passive_factor.value_or(curve.factor),
+                   config.passive_exponent.value_or(curve.exponent),
+                   config.passive_limit.value_or(curve.linear_from)};
+  return model;
+}
+
+Muscle muscle_of(const MaterialConfig& config) {
+  auto muscle = fibrous_of<Muscle>(config);
+  muscle.active.width = config.active_width.value_or(muscle.active.width);
+  return muscle;
+}
+
 }  // namespace
 
 Lame lame_of(const MaterialConfig& config) {
@@ -26,6 +46,10 @@ Lame lame_of(const MaterialConfig& config) {
     return MooneyRivlin::from_constants(*config.mu_10, *config.mu_01, *config.bulk_modulus).lame;
   if (config.mu) return {*config.lambda, *config.mu};
   return Lame::from_young_poisson(*config.youngs_modulus, *config.poissons_ratio);
+}
+
+bool has_fibres(MaterialModel model) {
+  return model == MaterialModel::muscle || model == MaterialModel::tendon;
 }
 
 Material material_of(const MaterialConfig& config) {
@@ -42,6 +66,10 @@ Material material_of(const MaterialConfig& config) {
       return spline_of(config);
     case MaterialModel::stable_neo_hookean:
       return StableNeoHookean{lame_of(config)};
+    case MaterialModel::muscle:
+      return muscle_of(config);
+    case MaterialModel::tendon:
+      return fibrous_of<Tendon>(config);
     case MaterialModel::neo_hookean:
       break;
   }

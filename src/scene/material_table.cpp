@@ -23,7 +23,9 @@ const std::vector<Choice<MaterialModel>>& models() {
       {"mooney_rivlin", mooney_rivlin, "rubber and flesh: shape and volume apart"},
       {"spline", spline, "soft for small strains, stiff beyond given stretches"},
       {"stable_neo_hookean", stable_neo_hookean,
-       "smooth through inversion; collapsed to a line it feels no force across"}};
+       "smooth through inversion; collapsed to a line it feels no force across"},
+      {"muscle", muscle, "mooney_rivlin with fibres that contract: needs 'fibres' of the body"},
+      {"tendon", tendon, "the same without activation: needs 'fibres' of the body"}};
   return all;
 }
 
@@ -37,13 +39,17 @@ std::vector<std::string> names_of(const Models& some) {
 void check_keys_of_model(const MaterialConfig& material, const Value& map, const std::string& path) {
   using enum MaterialModel;
   const Models with_extension{neo_hookean, st_venant_kirchhoff, mooney_rivlin};
-  const Models with_limit{neo_hookean, st_venant_kirchhoff, mooney_rivlin, spline};
+  const Models with_limit{neo_hookean, st_venant_kirchhoff, mooney_rivlin, spline, muscle, tendon};
+  const Models with_constants{mooney_rivlin, muscle, tendon};
+  const Models with_fibres{muscle, tendon};
   const std::vector<std::pair<const char*, Models>> owned{
       {"compression_limit", with_limit},   {"extension", with_extension},
-      {"mu_10", {mooney_rivlin}},          {"mu_01", {mooney_rivlin}},
-      {"bulk_modulus", {mooney_rivlin}},   {"mu_01_share", {mooney_rivlin}},
+      {"mu_10", with_constants},           {"mu_01", with_constants},
+      {"bulk_modulus", with_constants},    {"mu_01_share", with_constants},
       {"elongation_limit", {spline}},      {"compression_stiffening", {spline}},
-      {"elongation_stiffening", {spline}},
+      {"elongation_stiffening", {spline}}, {"peak_stress", with_fibres},
+      {"passive_factor", with_fibres},     {"passive_exponent", with_fibres},
+      {"passive_limit", with_fibres},      {"active_width", {muscle}},
   };
   for (const auto& [key, owners] : owned) {
     const auto* value = map.find(key);
@@ -52,6 +58,10 @@ void check_keys_of_model(const MaterialConfig& material, const Value& map, const
            "does not go with 'model: " + name_of(material.model) + "', only with " +
                list_of(names_of(owners)));
   }
+}
+
+bool has_mooneys_constants(MaterialModel model) {
+  return model == MaterialModel::mooney_rivlin || has_fibres(model);
 }
 
 /// Throws unless the moduli are given in exactly one way, and completely.
@@ -67,8 +77,21 @@ void check_moduli(const MaterialConfig& material, const Value& map, const std::s
                        (engineering == 0 && lame == 0 && constants == 3);
   if (one_way) return;
   std::string ways = "needs either 'youngs_modulus' [Pa] and 'poissons_ratio' [-], or 'lambda' and 'mu' [Pa]";
-  if (material.model == MaterialModel::mooney_rivlin) ways += ", or 'mu_10', 'mu_01' and 'bulk_modulus' [Pa]";
+  if (has_mooneys_constants(material.model)) ways += ", or 'mu_10', 'mu_01' and 'bulk_modulus' [Pa]";
   fail(map, path, ways);
+}
+
+/// Throws where the passive curve of fibres grows beyond all sense before it becomes linear.
+void check_passive_curve(const MaterialConfig& material, const Value& map, const std::string& path) {
+  constexpr double most = 50;  // e^50: twenty orders of magnitude above any tissue
+  const PassiveCurve curve;
+  const double grown = material.passive_exponent.value_or(curve.exponent) *
+                       (material.passive_limit.value_or(curve.linear_from) - 1);
+  if (grown <= most) return;
+  const auto* key = material.passive_exponent ? "passive_exponent" : "passive_limit";
+  const auto& value = *map.find(key);
+  fail(value, join(path, key),
+       shown(value) + " is not allowed: passive_exponent (passive_limit - 1) must be at most 50");
 }
 
 /// Throws for what depends on several numbers.
@@ -81,6 +104,9 @@ void check_numbers(const MaterialConfig& material, const Value& map, const std::
     wrong("lambda", "must be > -2/3 mu, or compression meets no resistance");
   if (material.mu_10 && *material.mu_10 + *material.mu_01 == 0)
     wrong("mu_10", "mu_10 and mu_01 must not both be 0");
+  if (has_fibres(material.model) && material.youngs_modulus && !(*material.youngs_modulus > 0))
+    wrong("youngs_modulus",
+          "must be > 0 with 'model: " + name_of(material.model) + "': fibres need a matrix");
   if (material.mu_10 && map.find("mu_01_share") != nullptr) wrong("mu_01_share", "mu_01 says it already");
   const bool at_end =
       material.compression_limit && (*material.compression_limit == 0 || *material.compression_limit == 1);
@@ -97,15 +123,18 @@ void add_moduli(Table<MaterialConfig>& table) {
       .either("lambda", &MaterialConfig::lambda, number("Pa"), "1e5",
               "First Lame parameter, with mu, instead of youngs_modulus and poissons_ratio; > -2/3 mu.")
       .either("mu", &MaterialConfig::mu, number("Pa", above(0)), "5e4", "Shear modulus of small strains.")
-      .either("mu_10", &MaterialConfig::mu_10, number("Pa", at_least(0)), "6e4",
-              "Of mooney_rivlin, with mu_01 and bulk_modulus instead of youngs_modulus and poissons_ratio: "
-              "the factor of the first invariant. The shear modulus of small strains is 2 (mu_10 + mu_01).")
+      .either(
+          "mu_10", &MaterialConfig::mu_10, number("Pa", at_least(0)), "6e4",
+          "Of mooney_rivlin, muscle and tendon, with mu_01 and bulk_modulus instead of youngs_modulus and "
+          "poissons_ratio: the factor of the first invariant. The shear modulus of small strains is 2 (mu_10 "
+          "+ mu_01).")
       .either("mu_01", &MaterialConfig::mu_01, number("Pa", at_least(0)), "2e4",
-              "Of mooney_rivlin: the factor of the second invariant.")
+              "With mu_10: the factor of the second invariant.")
       .either("bulk_modulus", &MaterialConfig::bulk_modulus, number("Pa", above(0)), "1e6",
-              "Of mooney_rivlin: resistance to changes of volume.")
+              "With mu_10: resistance to changes of volume.")
       .optional("mu_01_share", &MaterialConfig::mu_01_share, number("-", from_to(0, 1)), "0.25",
-                "Of mooney_rivlin given by youngs_modulus or mu: mu_01 / (mu_10 + mu_01); without it 0.25.");
+                "Of mooney_rivlin, muscle and tendon given by youngs_modulus or mu: mu_01 / (mu_10 + mu_01); "
+                "without it 0.25.");
 }
 
 void add_limits(Table<MaterialConfig>& table) {
@@ -113,7 +142,8 @@ void add_limits(Table<MaterialConfig>& table) {
       .optional("compression_limit", &MaterialConfig::compression_limit, number("-", from_to(0, 1)), "0.3",
                 "Principal stretch below which the model is extended through flat and inverted states, in "
                 "(0, 1); without it 0.3 for neo_hookean, 0.58 for st_venant_kirchhoff, 0.35 for "
-                "mooney_rivlin. Of spline: where compression becomes stiff, in [0, 1], 0.5 without it.")
+                "mooney_rivlin, 0.25 for muscle and tendon. Of spline: where compression becomes stiff, in "
+                "[0, 1], 0.5 without it.")
       .optional("extension", &MaterialConfig::extension,
                 one_of<Extension>(
                     {{"linear", Extension::linear, "the energy is continued: exact gradient, uninverts"},
@@ -128,6 +158,24 @@ void add_limits(Table<MaterialConfig>& table) {
                 "Of spline: slope of the stress above elongation_limit over that at rest; 10 without it.");
 }
 
+void add_fibres(Table<MaterialConfig>& table) {
+  table
+      .optional("peak_stress", &MaterialConfig::peak_stress, number("Pa", at_least(0)), "3e5",
+                "Of muscle and tendon: tension of the fibres, per area at rest, that their curves are "
+                "multiplied with: that of muscle at rest length with activation 1; 3e5 without it.")
+      .optional(
+          "passive_factor", &MaterialConfig::passive_factor, number("-", at_least(0)), "0.05",
+          "Of muscle and tendon: factor f of the passive curve f (exp(e s) - e s - 1), s = stretch of the "
+          "fibre - 1 > 0; 0.05 without it.")
+      .optional("passive_exponent", &MaterialConfig::passive_exponent, number("-", above(0)), "6.6",
+                "Of muscle and tendon: the exponent e; 6.6 without it.")
+      .optional("passive_limit", &MaterialConfig::passive_limit, number("-", at_least(1)), "1.4",
+                "Of muscle and tendon: stretch of the fibre above which the passive curve is linear; 1.4 "
+                "without it.")
+      .optional("active_width", &MaterialConfig::active_width, number("-", between(0, 1)), "0.6",
+                "Of muscle: w of the active curve 1 - (s / w)^2, zero beyond; 0.6 without it.");
+}
+
 }  // namespace
 
 std::string name_of(MaterialModel model) {
@@ -137,13 +185,13 @@ std::string name_of(MaterialModel model) {
 const Table<MaterialConfig>& material_table() {
   static const auto table = [] {
     Table<MaterialConfig> keys(
-        "An isotropic elastic model, and its moduli: either youngs_modulus and "
-        "poissons_ratio, or lambda and mu.");
+        "An elastic model, and its moduli: either youngs_modulus and poissons_ratio, or lambda and mu.");
     keys.required("model", &MaterialConfig::model, one_of(models()), "neo_hookean",
                   "How stress follows from strain; docs/materials.md compares them.");
     add_moduli(keys);
     add_limits(keys);
-    keys.then(check_keys_of_model).then(check_moduli).then(check_numbers);
+    add_fibres(keys);
+    keys.then(check_keys_of_model).then(check_moduli).then(check_numbers).then(check_passive_curve);
     return keys;
   }();
   return table;

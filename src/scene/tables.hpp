@@ -11,6 +11,7 @@ namespace evert {
 [[nodiscard]] const schema::Table<MeshConfig>& mesh_table();
 [[nodiscard]] const schema::Table<BodyConfig>& body_table();
 [[nodiscard]] const schema::Table<DampingConfig>& damping_table();
+[[nodiscard]] const schema::Table<FibreConfig>& fibre_table();
 [[nodiscard]] const schema::Table<ObstacleConfig>& obstacle_table();
 [[nodiscard]] const schema::Table<ConstraintConfig>& constraint_table();
 [[nodiscard]] const schema::Table<EventConfig>& event_table();
@@ -24,6 +25,12 @@ namespace evert {
 [[nodiscard]] schema::Type<Vec3d> gravity_type();
 /// [-]; also the type of the events that change it.
 [[nodiscard]] schema::Type<double> friction_type();
+
+/// A constant, or [[t, activation], ...] with times that increase.
+[[nodiscard]] schema::Type<ActivationConfig> activation_type();
+
+/// Throws unless fibres and activation are given exactly where a material of the body has them.
+void check_fibres(BodyConfig& body, const schema::Value& map, const std::string& path);
 
 /// Throws unless min <= max along every axis.
 void expect_ordered(const Vec3d& min, const Vec3d& max, const schema::Value& map, const std::string& path);

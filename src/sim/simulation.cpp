@@ -74,6 +74,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       integrator_(system_),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
+      activations_(std::move(definition.activations)),
       events_(std::move(definition.events)) {
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
@@ -90,6 +91,7 @@ StepReport Simulation::step_to(double end_time) {
   if (!(dt > 0)) give_up("the time step is lost in the rounding of the time");
   apply_due_events();
   refresh_forces();
+  activate(end_time);  // forces are computed next at the end of the step
   auto report = advance(dt);
   system_.time = end_time;
   ++steps_;
@@ -142,7 +144,9 @@ void Simulation::give_up(const std::string& what) const {
 double Simulation::suggested_time_step() {
   apply_due_events();
   refresh_forces();
-  return fixed_time_step_ > 0 ? fixed_time_step_ : time_step_.suggest(system_);
+  if (fixed_time_step_ > 0) return fixed_time_step_;
+  if (activation_rises(time_step_.horizon())) time_step_.reset();
+  return time_step_.suggest(system_);
 }
 
 double Simulation::next_event() const {
@@ -155,8 +159,20 @@ void Simulation::apply_due_events() {
 
 void Simulation::refresh_forces() {
   if (!forces_stale_) return;
+  activate(system_.time);
   system_.update_forces();
   forces_stale_ = false;
+}
+
+void Simulation::activate(double time) {
+  for (const auto& activation : activations_) elastic_.set_activation(activation.region, activation.at(time));
+}
+
+bool Simulation::activation_rises(double duration) const {
+  constexpr double much = 0.01;  // of a full activation: far below what the safety of the step leaves
+  for (const auto& activation : activations_)
+    if (activation.rise(system_.time, system_.time + duration) > much) return true;
+  return false;
 }
 
 void Simulation::min_stretch(std::size_t block, std::span<double> per_cell) const {

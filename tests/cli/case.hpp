@@ -34,6 +34,9 @@ struct Case {
 /// Every case there is.
 [[nodiscard]] const std::vector<Case>& all_cases();
 
+/// Those of muscle and tendon.
+[[nodiscard]] std::vector<Case> fibre_cases();
+
 // --- good input to spoil
 
 /// scene.yaml: a cube of 48 tetrahedra on its way to the ground for a few steps; it runs as it stands.

@@ -583,7 +583,7 @@ const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
     for (const auto& group : {good_runs, views, materials, bad_commands, bad_scenes, bad_meshes, cut_meshes(),
-                              failures, bad_output, bad_restarts})
+                              fibre_cases(), failures, bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

@@ -55,7 +55,8 @@ struct Counts {
 };
 
 /// What ten steps of a body that slides on the ground take, once the first have made their lists.
-Counts counts_of_steps(const std::vector<std::string>& options) {
+Counts counts_of_steps(const std::vector<std::string>& options,
+                       const std::vector<std::string>& overrides = {}) {
   for (const auto& option : options) check(PetscOptionsInsertString(nullptr, option.c_str()));
   auto scene = test::build(R"(
 name: sliding block
@@ -70,7 +71,8 @@ bodies:
     damping: {model: rotated, stiffness_proportional: 1.0e-3}
 obstacles:
   ground: {shape: half_space, normal: [0, 1, 0], friction: 0.1}
-)");
+)",
+                           overrides);
   auto& simulation = *scene.simulation;
   const auto steps = [&](int count) {
     LocalIndex contacts = 0;
@@ -95,6 +97,14 @@ TEST(Step, AllocatesAndAssemblesNothing) {
   const auto counts = counts_of_steps({});
   EXPECT_EQ(counts.allocations, 0);
   EXPECT_EQ(counts.assemblies, 0);
+}
+
+TEST(Step, AllocatesNothingWhileMuscleBecomesActive) {
+  const auto counts =
+      counts_of_steps({}, {"bodies.block.material={model: muscle, youngs_modulus: 1e5, poissons_ratio: 0.4}",
+                           "bodies.block.fibres={direction: [1, 0, 0]}",
+                           "bodies.block.activation=[[0, 0], [0.5, 0.5], [1, 0]]"});
+  EXPECT_EQ(counts.allocations, 0);
 }
 
 TEST(Step, IsSeenToAssembleWhereToldTo) {

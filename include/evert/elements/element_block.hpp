@@ -31,6 +31,7 @@ struct ElementBlock {
   ShapeData shape_data = ShapeData::node_gradients;
   NumberArray shapes;   ///< [batch][point][number][lane], in the order of rest_layout()
   NumberArray volumes;  ///< quadrature weight × det: [batch][point][lane] [m^3]; 0 in padding lanes
+  NumberArray fibres;   ///< directions at rest, turned: [batch][point][3][lane]; or empty
   std::vector<LocalIndex>
       cell_of_lane;  ///< [batch][lane]: index into the list given to the maker, −1 for padding
 
@@ -45,6 +46,12 @@ struct ElementBlock {
                                               LocalIndex interior, std::span<const Vec3d> rest_positions,
                                               int lanes, ShapeData shape_data = ShapeData::node_gradients,
                                               Precision precision = Precision::full);
+
+/// Gives every quadrature point of the block the direction of its cell, for materials that have fibres.
+/// `directions` are unit vectors in rest coordinates, one a cell, in the order of the list that the block was
+/// made from; they are kept as the cells are turned (shape_layout.hpp).
+void set_fibres(ElementBlock& block, std::span<const Vec3d> directions, std::span<const Vec3d> rest_positions,
+                Precision precision);
 
 /// Cells with a quadrature point at which the rest volume is zero, negative or not finite; ascending.
 [[nodiscard]] std::vector<LocalIndex> cells_without_volume(const ElementView& element,

@@ -85,6 +85,9 @@ class ElasticBlock {
   /// Replaces the parameters (timed events); same model and extension as before. Call update afterwards; the
   /// mass shares are the cells' own again.
   virtual void set_material(const Material& material, const Damping& damping) = 0;
+  /// Sets the activation of muscle, in [0, 1]; of other models nothing changes. Call update afterwards. Does
+  /// not allocate.
+  virtual void set_activation(double activation) = 0;
   /// Bytes of element data held.
   [[nodiscard]] virtual std::size_t memory() const = 0;
 };
@@ -95,6 +98,8 @@ struct ElasticCells {
   std::span<const LocalIndex> nodes;  ///< node_count(type) per cell; interior cells first
   LocalIndex interior = 0;            ///< cells [0, interior) touch owned nodes only
   double density = 0;                 ///< [kg/m^3]
+  std::span<const Vec3d>
+      fibres{};  ///< per cell, for models with fibres: their direction at rest, of length 1
 };
 
 /// In mixed precision positions and forces stay double; rest data, damping state and all arithmetic between

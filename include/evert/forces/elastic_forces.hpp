@@ -53,6 +53,9 @@ class ElasticForces {
   [[nodiscard]] const Halo& halo() const { return halo_; }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
+  /// Not collective. Sets the activation of the muscle of `region`, in [0, 1]; call update() afterwards. Does
+  /// not allocate.
+  void set_activation(std::int32_t region, double activation);
   /// Bytes of element data on this rank.
   [[nodiscard]] std::size_t memory() const;
 

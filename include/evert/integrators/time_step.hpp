@@ -22,6 +22,8 @@ class TimeStepControl {
 
   /// Forget the last estimate (a material has changed).
   void reset() { age_ = never; }
+  /// How long the last estimate may be used at most [s].
+  [[nodiscard]] double horizon() const { return steps_between_estimates * stable_; }
 
   // What a checkpoint keeps, so that a restart chooses the same steps.
   struct State {
@@ -32,6 +34,9 @@ class TimeStepControl {
   void restore(const State& state);
 
  private:
+  // The bound moves with the strain, and strain by at most max_strain_increment in a step: a few steps old,
+  // it is still within what `safety` covers.
+  static constexpr int steps_between_estimates = 4;
   static constexpr int never = -1;
   TimeStepOptions options_;
   double stable_ = 0;  // [s] last estimate over all ranks

@@ -13,7 +13,17 @@
 namespace evert {
 
 /// Every elastic model. Dispatched on once per element block, never per point.
-using Material =
-    std::variant<RotatedLinear, NeoHookean, StVenantKirchhoff, MooneyRivlin, Spline, StableNeoHookean>;
+using Material = std::variant<RotatedLinear, NeoHookean, StVenantKirchhoff, MooneyRivlin, Spline,
+                              StableNeoHookean, Muscle, Tendon>;
+
+/// True of models whose fibres need a direction at every point.
+[[nodiscard]] inline bool has_fibres(const Material& material) {
+  return std::visit([]<class Model>(const Model&) { return HasFibres<Model>; }, material);
+}
+
+/// Sets the activation of muscle, in [0, 1]; other models have none.
+inline void set_activation(Material& material, double activation) {
+  if (auto* muscle = std::get_if<Muscle>(&material)) muscle->activation = activation;
+}
 
 }  // namespace evert

@@ -100,10 +100,13 @@ enum class MaterialModel {
   st_venant_kirchhoff,
   mooney_rivlin,
   spline,
-  stable_neo_hookean
+  stable_neo_hookean,
+  muscle,
+  tendon
 };
 
-/// Moduli in exactly one way: (E, ν), (λ, μ), or with mooney_rivlin (μ10, μ01, κ). What is empty of the rest
+/// Moduli in exactly one way: (E, ν), (λ, μ), or with mooney_rivlin, and with muscle and tendon, whose matrix
+/// it is, (μ10, μ01, κ). What is empty of the rest
 /// is the model's own default, or does not go with the model.
 struct MaterialConfig {
   MaterialModel model = MaterialModel::neo_hookean;
@@ -120,7 +123,34 @@ struct MaterialConfig {
   std::optional<double> compression_stiffening;  ///< [-] > 0
   std::optional<double> elongation_stiffening;   ///< [-] > 0
   Extension extension = Extension::linear;
+  std::optional<double> peak_stress;       ///< [Pa] ≥ 0
+  std::optional<double> passive_factor;    ///< [-] ≥ 0
+  std::optional<double> passive_exponent;  ///< [-] > 0
+  std::optional<double> passive_limit;     ///< [-] ≥ 1
+  std::optional<double> active_width;      ///< [-] in (0, 1)
 };
+
+/// Directions of the fibres of a body at rest. Constant ones and curves stand in the world, after the body's
+/// transform; those of the mesh file turn with it.
+struct ConstantFibres {
+  Vec3d direction{{1, 0, 0}};  ///< unit vector
+};
+/// Vectors of any length per cell of the mesh file.
+struct FieldFibres {
+  std::string field;
+};
+/// Each cell takes the direction of the nearest segment of a polyline.
+struct CurveFibres {
+  std::vector<Vec3d> curve;  ///< [m] at least two points, no two in a row alike
+};
+using FibreConfig = std::variant<ConstantFibres, FieldFibres, CurveFibres>;
+
+struct ActivationKey {
+  double time = 0;   ///< [s]
+  double value = 0;  ///< [-] in [0, 1]
+};
+/// Linear in between, constant outside; times strictly increasing; never empty.
+using ActivationConfig = std::vector<ActivationKey>;
 
 /// Exactly one of stiffness_proportional and (alpha, beta) is given.
 struct DampingConfig {
@@ -136,6 +166,7 @@ struct GroupConfig {
   std::optional<double> density;  ///< [kg/m^3]
   std::optional<MaterialConfig> material;
   std::optional<DampingConfig> damping;
+  std::optional<ActivationConfig> activation;
 };
 
 struct BodyConfig {
@@ -149,6 +180,8 @@ struct BodyConfig {
   std::optional<StartConfig> start;
   MaterialConfig material;
   std::optional<DampingConfig> damping;
+  std::optional<FibreConfig> fibres;           ///< there exactly when some material needs it
+  std::optional<ActivationConfig> activation;  ///< of muscle; empty: not active
   Precision precision = Precision::full;
   std::vector<GroupConfig> groups;
 };

@@ -16,6 +16,9 @@ namespace evert {
 
 [[nodiscard]] Material material_of(const MaterialConfig& config);
 
+/// True of models that need the directions of fibres.
+[[nodiscard]] bool has_fibres(MaterialModel model);
+
 /// "neo_hookean", as in scenes.
 [[nodiscard]] std::string name_of(MaterialModel model);
 

@@ -3,6 +3,7 @@
 #include "evert/contact/prescribed_motion.hpp"
 #include "evert/forces/elastic_forces.hpp"
 #include "evert/integrators/time_step.hpp"
+#include "evert/sim/activation.hpp"
 
 #include <functional>
 #include <memory>
@@ -23,6 +24,7 @@ struct SimulationDefinition {
   std::vector<ElasticProperties> properties;  ///< per entry of DistributedMesh::regions
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<PrescribedNodes> prescribed;  ///< this rank's owned nodes
+  std::vector<Activation> activations;      ///< of regions of muscle
   std::vector<TimedEvent> events;
   Vec3d gravity{};                        ///< [m/s^2]
   std::vector<Vec3d> initial_positions;   ///< per owned node [m]; empty: at rest shape

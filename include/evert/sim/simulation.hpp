@@ -93,6 +93,10 @@ class Simulation {
  private:
   void apply_due_events();
   void refresh_forces();
+  /// Gives muscle the activation that it has at `time` [s], for the forces to be computed next.
+  void activate(double time);
+  /// True when muscle may become much stiffer within `duration` [s].
+  [[nodiscard]] bool activation_rises(double duration) const;
   StepReport advance(double dt);
   /// True when any rank has called request_stop. Throws SimulationError when any rank's state is not sound.
   bool agree_on_state();
@@ -107,6 +111,7 @@ class Simulation {
   Newmark integrator_;
   double fixed_time_step_;
   TimeStepControl time_step_;
+  std::vector<Activation> activations_;
   std::vector<TimedEvent> events_;
   std::size_t events_done_ = 0;
   std::int64_t steps_ = 0;

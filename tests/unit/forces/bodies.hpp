@@ -36,15 +36,31 @@ inline Vec3d at_node(const NodalValues& values, std::size_t node) {
   return {values[3 * node], values[3 * node + 1], values[3 * node + 2]};
 }
 
+/// Unit vectors in all directions, for more cells than any body here has.
+inline const std::vector<Vec3d>& many_directions() {
+  static const auto all = [] {
+    std::mt19937_64 random(23);
+    std::normal_distribution<double> normal;
+    std::vector<Vec3d> directions(std::size_t{1} << 15U);
+    for (Vec3d& d : directions) {
+      d = {normal(random), normal(random), normal(random)};
+      d = (1 / norm(d)) * d;
+    }
+    return directions;
+  }();
+  return all;
+}
+
 struct Body {
   CellType type = CellType::tet4;
   std::vector<Vec3d> rest;
   std::vector<LocalIndex> nodes;
+  std::vector<Vec3d> fibres = many_directions();  ///< of the first so many cells
 
   [[nodiscard]] std::size_t nodes_per_cell() const { return static_cast<std::size_t>(node_count(type)); }
   [[nodiscard]] LocalIndex cells() const { return static_cast<LocalIndex>(nodes.size() / nodes_per_cell()); }
   [[nodiscard]] ElasticCells elastic_cells(LocalIndex interior = 0) const {
-    return {type, nodes, interior, 1000};
+    return {type, nodes, interior, 1000, std::span(fibres).first(static_cast<std::size_t>(cells()))};
   }
   [[nodiscard]] std::span<const LocalIndex> cell(LocalIndex i) const {
     return std::span(nodes).subspan(static_cast<std::size_t>(i) * nodes_per_cell(), nodes_per_cell());
@@ -62,7 +78,7 @@ inline Body with_middle_nodes(const Body& corners) {
                         {corners.nodes.begin(), corners.nodes.end()},
                         std::vector<std::int32_t>(static_cast<std::size_t>(corners.cells()), 0)});
   make_quadratic(mesh);
-  Body body{.type = CellType::tet10, .rest = mesh.nodes, .nodes = {}};
+  Body body{.type = CellType::tet10, .rest = mesh.nodes, .nodes = {}, .fibres = corners.fibres};
   for (const GlobalIndex node : mesh.cells.front().nodes) body.nodes.push_back(static_cast<LocalIndex>(node));
   return body;
 }
@@ -179,7 +195,14 @@ inline std::vector<Material> all_materials(const Lame& lame = soft) {
           MooneyRivlin{.lame = lame},
           MooneyRivlin{.lame = lame, .extension = Extension::clamp},
           Spline{.lame = lame},
-          StableNeoHookean{.lame = lame}};
+          StableNeoHookean{.lame = lame},
+          Muscle{.lame = lame, .peak_stress = 2 * lame.mu},
+          Tendon{.lame = lame, .peak_stress = 2 * lame.mu}};
+}
+
+/// Not among all models: it is not free of stress at rest.
+inline Muscle active_muscle(double activation, const Lame& lame = soft) {
+  return {.lame = lame, .peak_stress = 2 * lame.mu, .activation = activation};
 }
 
 inline std::string name_of(const Material& material) {

@@ -28,39 +28,39 @@ inline ReferenceForces reference_forces(const Body& body, const Material& materi
   result.magnitude.resize(body.rest.size(), 0);
   result.stiffness.resize(body.rest.size(), 0);
   const Lame lame = std::visit([](const auto& model) { return model.lame; }, material);
-  with_reference_element(
-      body.type, [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element) {
-        for (LocalIndex c = 0; c < body.cells(); ++c) {
-          const auto cell = body.cell(c);
-          for (std::size_t q = 0; q < points; ++q) {
-            Mat3<Real80> rest{}, now{};
-            for (std::size_t a = 0; a < nodes; ++a) {
-              const auto gradient = converted<Real80>(element.gradients[q][a]);
-              const auto node = static_cast<std::size_t>(cell[a]);
-              rest += outer(converted<Real80>(body.rest[node]), gradient);
-              now += outer(converted<Real80>(at_node(x, node)), gradient);
-            }
-            const Mat3<Real80> inverse_rest = inverse(rest);
-            const Real80 volume = determinant(rest) * element.weights[q];
-            const auto [u, sigma, v] = svd3(now * inverse_rest);
-            const auto [stress, energy] = std::visit(
-                [&](const auto& model) {
-                  return std::pair{model.principal_stress(sigma), model.energy(sigma)};
-                },
-                material);
-            const Mat3<Real80> p = u * diagonal(stress) * transpose(v);
-            result.energy += volume * energy;
-            for (std::size_t a = 0; a < nodes; ++a) {
-              const auto node = static_cast<std::size_t>(cell[a]);
-              const Vec3<Real80> gradient =
-                  transpose_times(inverse_rest, converted<Real80>(element.gradients[q][a]));
-              result.forces[node] -= volume * (p * gradient);
-              result.magnitude[node] += volume * norm(p) * norm(gradient);
-              result.stiffness[node] += volume * (norm(p) + 2 * lame.mu + 3 * lame.lambda) * norm(gradient);
-            }
-          }
+  with_reference_element(body.type, [&]<int nodes, int points>(
+                                        const ReferenceElement<nodes, points>& element) {
+    for (LocalIndex c = 0; c < body.cells(); ++c) {
+      const auto cell = body.cell(c);
+      for (std::size_t q = 0; q < points; ++q) {
+        Mat3<Real80> rest{}, now{};
+        for (std::size_t a = 0; a < nodes; ++a) {
+          const auto gradient = converted<Real80>(element.gradients[q][a]);
+          const auto node = static_cast<std::size_t>(cell[a]);
+          rest += outer(converted<Real80>(body.rest[node]), gradient);
+          now += outer(converted<Real80>(at_node(x, node)), gradient);
         }
-      });
+        const Mat3<Real80> inverse_rest = inverse(rest);
+        const Real80 volume = determinant(rest) * element.weights[q];
+        const auto [u, sigma, v] = svd3(now * inverse_rest);
+        const auto fibre = converted<Real80>(body.fibres[static_cast<std::size_t>(c)]);
+        const auto [p, energy] = std::visit(
+            [&, svd = Svd3<Real80>{u, sigma, v}](const auto& model) {
+              return std::pair{first_piola_kirchhoff(model, svd, fibre), energy_density(model, svd, fibre)};
+            },
+            material);
+        result.energy += volume * energy;
+        for (std::size_t a = 0; a < nodes; ++a) {
+          const auto node = static_cast<std::size_t>(cell[a]);
+          const Vec3<Real80> gradient =
+              transpose_times(inverse_rest, converted<Real80>(element.gradients[q][a]));
+          result.forces[node] -= volume * (p * gradient);
+          result.magnitude[node] += volume * norm(p) * norm(gradient);
+          result.stiffness[node] += volume * (norm(p) + 2 * lame.mu + 3 * lame.lambda) * norm(gradient);
+        }
+      }
+    }
+  });
   return result;
 }
 

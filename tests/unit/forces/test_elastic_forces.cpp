@@ -221,6 +221,7 @@ TEST(ElasticForces, DoNotDependOnTheOrderOfTheCells) {
     for (std::size_t i = 0; i < order.size(); ++i) {
       const auto cell = body.cell(order[i]);
       std::copy(cell.begin(), cell.end(), shuffled.nodes.begin() + static_cast<std::ptrdiff_t>(i * per_cell));
+      shuffled.fibres[i] = body.fibres[static_cast<std::size_t>(order[i])];
     }
     const NodalValues v = random_velocities(body.rest.size());
     for (const Material& material : all_materials()) {

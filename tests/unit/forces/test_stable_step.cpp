@@ -237,6 +237,75 @@ TEST(StableStep, IsABoundAtEveryState) {
   }
 }
 
+/// The same of muscle, with fibres as strong as its matrix and ten times as strong, shortened and stretched.
+TEST(StableStep, IsABoundAtEveryActivation) {
+  const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);
+  int limited_by_fibres = 0;
+  for (const double activation : {0.0, 0.5, 1.0}) {
+    for (const double strength : {2.0, 20.0}) {
+      Muscle muscle = active_muscle(activation);
+      muscle.peak_stress = strength * soft.mu;
+      const auto block = make_elastic_block(body.elastic_cells(), body.rest, muscle, no_damping);
+      const auto matrix = make_elastic_block(body.elastic_cells(), body.rest, muscle.matrix(), no_damping);
+      for (unsigned seed = 0; seed < 40; ++seed) {
+        const double stretch = 1.9 - 0.05 * seed;
+        const NodalValues x = deformed(
+            body,
+            [=](const Vec3d& p) {
+              return rotation(seed) * Vec3d{p[0], stretch * p[1], 1.1 * p[2]};
+            },
+            0.005, seed);
+        const double exact =
+            2 / std::sqrt(std::max(
+                    largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
+        const double bound = block->stable_step(x.data()).undamped;
+        EXPECT_LE(bound, exact * 1.001) << activation << ", " << strength << ", stretched to " << stretch;
+        EXPECT_GE(bound, exact / 8) << activation << ", " << strength << ", stretched to " << stretch;
+        limited_by_fibres += exact < matrix->stable_step(x.data()).undamped ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(limited_by_fibres, 0) << "the bound of the matrix alone would do";
+}
+
+/// M + Δt/2 C − Δt²/4 K of damped muscle stays positive definite at the step that is used, and not far above
+/// it everywhere.
+TEST(StableStep, OfDampedMuscleIsSafe) {
+  const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);
+  const auto mass = lumped_mass(body);
+  int raised = 0, exceeded = 0;
+  for (const double time : {1e-2, 1e-1}) {
+    const auto damping = Damping::stiffness_proportional(DampingModel::rotated, time, soft.lambda, soft.mu);
+    for (const double activation : {0.0, 1.0}) {
+      Muscle muscle = active_muscle(activation);
+      muscle.peak_stress = 20 * soft.mu;
+      const auto block = make_elastic_block(body.elastic_cells(), body.rest, muscle, damping);
+      for (unsigned seed = 0; seed < 20; ++seed) {
+        const double stretch = 1.7 - 0.06 * seed;
+        const NodalValues x = deformed(
+            body,
+            [=](const Vec3d& p) {
+              return rotation(seed) * Vec3d{p[0], stretch * p[1], p[2]};
+            },
+            0.003, seed);
+        forces(*block, x);
+        const StableStep limit = block->stable_step(x.data());
+        const double dt = std::max(limit.undamped, limit.damped / 2);
+        const MatrixXd c = per_mass(damping_matrix(*block, body.rest.size()), mass);
+        const MatrixXd k = per_mass(tangent_stiffness(*block, x), mass);
+        const auto smallest = [&](double step) {
+          return 1 - largest_eigenvalue(step * step / 4 * k - step / 2 * c);
+        };
+        EXPECT_GT(smallest(0.999 * dt), 0) << time << ", " << activation << ", stretched to " << stretch;
+        raised += dt > 1.5 * limit.undamped ? 1 : 0;
+        exceeded += smallest(6 * dt) < 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(raised, 0);
+  EXPECT_GT(exceeded, 0) << "a bound that nothing reaches";
+}
+
 TEST(StableStep, ShrinksAsNeoHookeanIsCompressed) {
   const Body body = box(CellType::tet4, 2, 2, 2, 0.1, 0.0);
   const auto block =

@@ -40,7 +40,7 @@ const std::vector<Mistake> mistakes{
      "friction or velocity"},
     {"merge_key", "density: 1000", "<<: {density: 1000}",
      "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, order, transform, "
-     "density, velocity, spin, start, material, damping, precision or groups"},
+     "density, velocity, spin, start, material, damping, fibres, activation, precision or groups"},
     // duplicate keys
     {"duplicate_key", "density: 1000", "density: 1000\n    density: 1000",
      "scene.yaml:14: duplicate key 'density', first given at scene.yaml:13"},
@@ -127,8 +127,8 @@ const std::vector<Mistake> mistakes{
     // words
     {"unknown_model", "model: neo_hookean", "model: neohookean",
      "scene.yaml:18: bodies.torus.material.model: 'neohookean' is not allowed: must be neo_hookean, "
-     "rotated_linear, st_venant_kirchhoff, mooney_rivlin, spline or stable_neo_hookean (did you mean "
-     "'neo_hookean'?)"},
+     "rotated_linear, st_venant_kirchhoff, mooney_rivlin, spline, stable_neo_hookean, muscle or tendon (did "
+     "you mean 'neo_hookean'?)"},
     {"unknown_shape", "shape: sphere", "shape: cube",
      "scene.yaml:36: obstacles.ball.shape: 'cube' is not allowed: must be half_space or sphere"},
     {"unknown_generator", "generate: torus", "generate: tours",
@@ -141,7 +141,7 @@ const std::vector<Mistake> mistakes{
      "mean 'rank'?)"},
     {"list_for_word", "model: neo_hookean", "model: [neo_hookean]",
      "scene.yaml:18: bodies.torus.material.model: must be neo_hookean, rotated_linear, "
-     "st_venant_kirchhoff, mooney_rivlin, spline or stable_neo_hookean, not a list"},
+     "st_venant_kirchhoff, mooney_rivlin, spline, stable_neo_hookean, muscle or tendon, not a list"},
     // several keys together
     {"no_shape", "{shape: sphere, ", "{",
      "scene.yaml:36: obstacles.ball: needs one of 'shape: half_space or shape: sphere'"},
@@ -172,10 +172,10 @@ const std::vector<Mistake> mistakes{
      "[Pa s]"},
     {"limit_without_extension", "model: neo_hookean", "model: rotated_linear",
      "scene.yaml:21: bodies.torus.material.compression_limit: does not go with 'model: rotated_linear', only "
-     "with neo_hookean, st_venant_kirchhoff, mooney_rivlin or spline"},
+     "with neo_hookean, st_venant_kirchhoff, mooney_rivlin, spline, muscle or tendon"},
     {"constant_of_another_model", "compression_limit: 0.3", "mu_01_share: 0.3",
      "scene.yaml:21: bodies.torus.material.mu_01_share: does not go with 'model: neo_hookean', only with "
-     "mooney_rivlin"},
+     "mooney_rivlin, muscle or tendon"},
     {"elongation_of_another_model", "compression_limit: 0.3", "elongation_limit: 2",
      "scene.yaml:21: bodies.torus.material.elongation_limit: does not go with 'model: neo_hookean', only "
      "with "

@@ -67,10 +67,40 @@ TEST(SceneMaterial, HasTheDefaultsOfTheModel) {
   EXPECT_EQ(spline.elongation_stiffening, 10);
 }
 
+TEST(SceneMaterial, FibresHaveDefaultsAndKeysOfTheirOwn) {
+  const std::string moduli = "mu_10: 6e4, mu_01: 2e4, bulk_modulus: 6e5";
+  const auto plain = std::get<Muscle>(material("{model: muscle, " + moduli + "}"));
+  EXPECT_DOUBLE_EQ(plain.lame.mu, 1.6e5);
+  EXPECT_EQ(plain.share_01, 0.25);
+  EXPECT_EQ(plain.compression_limit, 0.25);
+  EXPECT_EQ(plain.peak_stress, 3e5);
+  EXPECT_EQ(plain.passive.factor, 0.05);
+  EXPECT_EQ(plain.passive.exponent, 6.6);
+  EXPECT_EQ(plain.passive.linear_from, 1.4);
+  EXPECT_EQ(plain.active.width, 0.6);
+  EXPECT_EQ(plain.activation, 0);
+  const std::string passive =
+      ", compression_limit: 0.3, peak_stress: 1e6, passive_factor: 0.1, passive_exponent: 5, passive_limit: "
+      "1.2";
+  const auto other =
+      std::get<Muscle>(material("{model: muscle, " + moduli + passive + ", active_width: 0.5}"));
+  const auto tendon = std::get<Tendon>(material("{model: tendon, " + moduli + passive + "}"));
+  EXPECT_EQ(other.active.width, 0.5);
+  const auto expect_keys = [](const auto& model) {
+    EXPECT_EQ(model.compression_limit, 0.3);
+    EXPECT_EQ(model.peak_stress, 1e6);
+    EXPECT_EQ(model.passive.factor, 0.1);
+    EXPECT_EQ(model.passive.exponent, 5);
+    EXPECT_EQ(model.passive.linear_from, 1.2);
+  };
+  expect_keys(other);
+  expect_keys(tendon);
+}
+
 /// What the model is called in scenes is what it calls itself.
 TEST(SceneMaterial, HasTheNameOfTheModel) {
   for (const auto& name : {"neo_hookean", "rotated_linear", "st_venant_kirchhoff", "mooney_rivlin", "spline",
-                           "stable_neo_hookean"}) {
+                           "stable_neo_hookean", "muscle", "tendon"}) {
     const auto model = material("{model: " + std::string(name) + ", youngs_modulus: 1, poissons_ratio: 0}");
     EXPECT_EQ(std::visit([](const auto& one) { return one.name; }, model), name);
   }

@@ -35,8 +35,8 @@ TEST(Reference, finds_keys_by_the_end_of_their_path) {
 
 TEST(Reference, explains_words) {
   const auto text = reference_of("bodies.torus.material.model");
-  EXPECT_NE(text.find("neo_hookean, rotated_linear, st_venant_kirchhoff, mooney_rivlin, spline or "
-                      "stable_neo_hookean"),
+  EXPECT_NE(text.find("neo_hookean, rotated_linear, st_venant_kirchhoff, mooney_rivlin, spline, "
+                      "stable_neo_hookean, muscle or tendon"),
             std::string::npos);
   EXPECT_NE(text.find("linear in the stretches"), std::string::npos);
 }

@@ -18,6 +18,7 @@ struct BlockArrays {
   const float* rest_stiffness;     ///< [batch][lane] λ_e of the stable step, see tangent_bound.hpp [1/s²]
   const float* spin_stiffness;     ///< the same for damped spin, see stable_steps [1/s²]
   void* damping_state;             ///< see damping_kernels.hpp
+  const void* fibres;              ///< [batch][point][3][lane]; null where the model has none
 };
 
 /// The model that the kernel was chosen by.

@@ -17,6 +17,7 @@ struct ElasticKernels {
   int damping_numbers = 0;                           ///< numbers of damping state per cell
   bool rotated_gradients = false;  ///< the damping state holds h_a, in the form of the shape data, not A
                                    ///< (damping_kernels.hpp)
+  bool fibres = false;             ///< they read BlockArrays::fibres
   void (*update)(const BlockArrays&, const Material&, const double* x, double* f, BatchRange) = nullptr;
   void (*add_damping)(const BlockArrays&, const Damping&, double factor, const double* v, double* out,
                       BatchRange) = nullptr;  ///< null without damping, as the next one

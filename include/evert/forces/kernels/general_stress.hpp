@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/forces/kernels/point_model.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 
 #include <concepts>
@@ -8,9 +9,9 @@
 namespace evert::kernels {
 
 /// The model offers, for one SVD over any scalar T, P̂ = Uᵀ P V [Pa], a full matrix, as
-/// `stress_in_frames(svd)`, and ψ [Pa] as `energy(svd)`.
+/// `stress_in_frames(svd)`, and ψ [Pa] as `energy(svd)`; a model with fibres does so along a direction.
 template <class Model>
-concept NeedsFrames = requires(const Model& model, const Svd3<double>& svd) {
+concept NeedsFrames = HasFibres<Model> || requires(const Model& model, const Svd3<double>& svd) {
   { model.stress_in_frames(svd) } -> std::same_as<Mat3d>;
   { model.energy(svd) } -> std::same_as<double>;
 };
@@ -51,7 +52,8 @@ EVERT_STAGE void framed_stress_stage(const Model& model, const BlockArrays& bloc
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const CellBatch<T, element> batch(block, b);
     for (std::size_t q = 0; q < batch.points; ++q, ++i)
-      framed.stress[i] = -batch.volume(q) * model.stress_in_frames(framed.svd[i]);
+      framed.stress[i] =
+          -batch.volume(q) * model_at<T, element>(model, block, b, q).stress_in_frames(framed.svd[i]);
   }
 }
 

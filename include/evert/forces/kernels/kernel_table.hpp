@@ -18,6 +18,7 @@ constexpr ElasticKernels kernels_of() {
       .shape_data = element.tensor_product ? ShapeData::inverse_jacobian : ShapeData::node_gradients,
       .damping_numbers = static_cast<int>(damping_numbers<element, damping>),
       .rotated_gradients = keeps_rotated_gradients<element, damping>,
+      .fibres = HasFibres<Model>,
       .update = update<T, element, Model, damping>,
       .energy = energy<T, element, Model>,
       .min_stretch = min_stretch<T, element>,

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/damping_kernels.hpp"
+#include "evert/forces/kernels/fibre_bound.hpp"
 #include "evert/forces/kernels/general_stress.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/forces/kernels/tangent_bound.hpp"
@@ -29,11 +30,22 @@ EVERT_ALWAYS_INLINE double largest_lane(const T& x) {
   return -smallest_lane(-x);
 }
 
+/// Where point `i` of a run of `piece` stands in the block.
+struct PointPlace {
+  LocalIndex batch;
+  std::size_t q;
+};
+template <const auto& element>
+EVERT_ALWAYS_INLINE PointPlace place_of(BatchRange piece, std::size_t i) {
+  return {piece.begin + static_cast<LocalIndex>(i / element.points), i % element.points};
+}
+
 /// ψ at point i of a diagonalised run.
-template <Real T, class Model>
-EVERT_ALWAYS_INLINE T energy_density(const Model& model, const PointRun<T>& run, std::size_t i) {
+template <Real T, const auto& element, class Model>
+EVERT_ALWAYS_INLINE T energy_density(const Model& model, const BlockArrays& block, const PointPlace& place,
+                                     const PointRun<T>& run, std::size_t i) {
   if constexpr (NeedsFrames<Model>) {
-    return model.energy(assemble_svd3(run.deflation(i)));
+    return model_at<T, element>(model, block, place.batch, place.q).energy(assemble_svd3(run.deflation(i)));
   } else {
     return model.energy(principal_stretches(run.plane[i]));
   }
@@ -48,8 +60,9 @@ EVERT_ALWAYS_INLINE double sum_of_energy(const Model& model, const BlockArrays& 
     diagonalize(run, points);
     T of_run = T(0.0);
     for (std::size_t i = 0; i < points; ++i) {
-      const CellBatch<T, element> batch(block, piece.begin + static_cast<LocalIndex>(i / batch.points));
-      of_run += batch.volume(i % batch.points) * energy_density(model, run, i);
+      const PointPlace place = place_of<element>(piece, i);
+      const CellBatch<T, element> batch(block, place.batch);
+      of_run += batch.volume(place.q) * energy_density<T, element>(model, block, place, run, i);
     }
     sum += sum_of_lanes(of_run);
   });
@@ -250,6 +263,18 @@ EVERT_ALWAYS_INLINE BatchSteps<T> stable_steps(const TangentBound<T>& bound, con
   return {undamped, select(finite, max(damped, undamped), undamped)};
 }
 
+/// How stiff the model is at point i of a diagonalised run.
+template <Real T, const auto& element, class Model>
+EVERT_ALWAYS_INLINE TangentBound<T> bound_at(const Model& model, const BlockArrays& block,
+                                             const PointPlace& place, const PointRun<T>& run, std::size_t i) {
+  if constexpr (HasFibres<Model>) {
+    return tangent_bound(model_at<T, element>(model, block, place.batch, place.q),
+                         assemble_svd3(run.deflation(i)), element.points);
+  } else {
+    return tangent_bound(model, principal_stretches(run.plane[i]), element.points);
+  }
+}
+
 /// See ElasticBlock::stable_step.
 template <Real T, const auto& element, class Model>
 StableStep stable_step(const BlockArrays& block, const Material& material, const Damping& damping,
@@ -262,18 +287,18 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
   for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
     diagonalize(run, points);
     for (std::size_t i = 0; i < points; ++i) {
-      const auto batch = static_cast<std::size_t>(piece.begin) + i / element.points;
-      const T stiffness = load_floats<T>(block.rest_stiffness + batch * lanes_v<T>);
-      const T spin_stiffness = load_floats<T>(block.spin_stiffness + batch * lanes_v<T>);
-      const Vec3<T> sigma = principal_stretches(run.plane[i]);
+      const PointPlace place = place_of<element>(piece, i);
+      const auto first_lane = static_cast<std::size_t>(place.batch) * lanes_v<T>;
+      const T stiffness = load_floats<T>(block.rest_stiffness + first_lane);
+      const T spin_stiffness = load_floats<T>(block.spin_stiffness + first_lane);
       T credited = time;
       if (damping.model == DampingModel::objective) {
         // Vanishes when flat: scaled by the smallest stretch squared, like its operator.
         const T remaining = min(max(smallest_stretch(run.plane[i]), T(0.0)), T(1.0));
         credited *= remaining * remaining;
       }
-      const BatchSteps<T> steps =
-          stable_steps(tangent_bound(model, sigma, element.points), stiffness, spin_stiffness, credited);
+      const BatchSteps<T> steps = stable_steps(bound_at<T, element>(model, block, place, run, i), stiffness,
+                                               spin_stiffness, credited);
       undamped = min(undamped, steps.undamped);
       damped = min(damped, steps.damped);
     }

@@ -86,6 +86,12 @@ inline constexpr Scalar unresolvable = Scalar(1e200);
 template <>
 inline constexpr float unresolvable<float> = 1e30F;
 
+/// The largest eigenvalue of a skew part of modulus 2μ, at most, in units of λ_e.
+inline double spin_share(const Lame& lame, int points) {
+  const double along_gradient = std::max(lame.lambda, 0.0) / (points == 1 ? 1 : 3);
+  return 2 * lame.mu / (2 * lame.mu + along_gradient);
+}
+
 /// `model` at the principal stretches `sigma`, in any order, in an element of `points` quadrature points.
 /// `model.lame` must be positive definite (E > 0).
 template <Real T, class Model>
@@ -101,8 +107,7 @@ EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3
     stretching = max(stretching, in_shear * shear[k]);
     skew = max(skew, in_shear * spins[k]);
   }
-  const double along_gradient = std::max(model.lame.lambda, 0.0) / (points == 1 ? 1 : 3);
-  const T spin = T(2 * model.lame.mu / (2 * model.lame.mu + along_gradient)) * skew;
+  const T spin = T(spin_share(model.lame, points)) * skew;
   const T total = min(max(stretching, skew), stretching + spin);
   const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable<scalar_t<T>>);
   return {stretching, spin, select(finite, total, T(unresolvable<scalar_t<T>>)), skew};
