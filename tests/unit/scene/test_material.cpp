@@ -12,11 +12,13 @@ namespace {
 using testing::changed;
 using testing::least_scene;
 
-/// The model of the only body with this material.
+/// The model of the only body with this material; with fibres where it needs them.
 Material material(const std::string& text) {
-  const auto scene = parse_scene(
-      changed(least_scene, "{model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.3}", text),
-      "scene.yaml", {});
+  const bool fibrous = text.find("muscle") != std::string::npos || text.find("tendon") != std::string::npos;
+  const auto scene =
+      parse_scene(changed(least_scene, "{model: neo_hookean, youngs_modulus: 1e5, poissons_ratio: 0.3}",
+                          text + (fibrous ? "\n    fibres: {direction: [1, 0, 0]}" : "")),
+                  "scene.yaml", {});
   return material_of(scene.bodies[0].material);
 }
 
