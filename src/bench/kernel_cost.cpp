@@ -54,13 +54,14 @@ struct CountedCell {
   std::vector<double> f = std::vector<double>(3 * element.nodes + 1);
   std::unique_ptr<ElasticBlock> block;
 
-  CountedCell(DampingModel damping, const kernels::ElasticKernels& kernels) {
+  CountedCell(const Material& material, DampingModel damping, const kernels::ElasticKernels& kernels) {
     std::vector<LocalIndex> nodes(element.nodes);
     std::iota(nodes.begin(), nodes.end(), 0);
     const auto rest = unit_cell(element.type);
     for (const Vec3d& p : rest) x.insert(x.end(), {1.1 * p[0] + 0.3 * p[1], p[1], 0.9 * p[2]});
     x.push_back(0);  // the double of slack that kernels may read
-    block = make_elastic_block({element.type, nodes, 1, 1}, rest, NeoHookean{.lame = {1, 1}}, {damping, 1, 1},
+    const Vec3d fibre{0.6, 0, 0.8};
+    block = make_elastic_block({element.type, nodes, 1, 1, {&fibre, 1}}, rest, material, {damping, 1, 1},
                                kernels);
   }
 
@@ -77,9 +78,11 @@ struct CountedCell {
   }
 };
 
+constexpr NeoHookean neo_hookean{.lame = {1, 1}};
+
 template <const auto& element>
 CountedCell<element> cell_of_library(DampingModel damping) {
-  return {damping, kernels::kernels_of<Counted, element, NeoHookean>(damping)};
+  return {neo_hookean, damping, kernels::kernels_of<Counted, element, NeoHookean>(damping)};
 }
 
 template <const auto& element>
@@ -103,8 +106,17 @@ KernelCost force_cost(CellType type, DampingModel damping) {
   return {};
 }
 
+KernelCost force_cost(CellType type, const Material& material) {
+  const auto cost = [&]<const auto & element>() {
+    const auto kernels = kernels::kernels_of<Counted, element>(material, DampingModel::none);
+    return force_cost_of(CountedCell<element>(material, DampingModel::none, kernels));
+  };
+  return type == CellType::hex8 ? cost.template operator()<hex8>() : cost.template operator()<tet4>();
+}
+
 KernelCost general_path_cost() {
-  return force_cost_of(CountedCell<hex8_by_gradients>(DampingModel::none, general_hex_kernels<Counted>()));
+  return force_cost_of(
+      CountedCell<hex8_by_gradients>(neo_hookean, DampingModel::none, general_hex_kernels<Counted>()));
 }
 
 KernelCost damping_cost() {

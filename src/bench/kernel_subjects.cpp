@@ -17,6 +17,15 @@ constexpr std::size_t multiply_add_steps = 3000;
 constexpr std::size_t division_steps = 100;
 constexpr NeoHookean material{.lame = Lame::from_young_poisson(1e5, 0.4)};
 
+ElasticForces elastic(const Specimen& specimen, const Material& of_cells) {
+  const ElasticProperties all{density, of_cells, {}};
+  return {specimen.mesh, std::span(&all, 1)};
+}
+
+FibreForces fibre_forces(const Specimen& specimen) {
+  return {elastic(specimen, bench_muscle()), elastic(specimen, bench_tendon())};
+}
+
 ElasticProperties properties(DampingModel damping) {
   return {density, material,
           damping == DampingModel::none ? Damping{}
@@ -38,11 +47,15 @@ std::size_t parts_of(const DistributedMesh& mesh) {
 
 }  // namespace
 
+Material bench_muscle() { return Muscle{.lame = material.lame, .activation = 0.5}; }
+Material bench_tendon() { return Tendon{.lame = material.lame}; }
+
 TetSubject::TetSubject(MPI_Comm comm, int divisions)
     : specimen_(comm, CellType::tet4, divisions),
       result_(specimen_.mesh),
       plain_(elastic(specimen_, DampingModel::none)),
       damped_(elastic(specimen_, DampingModel::rotated)),
+      fibres_(fibre_forces(specimen_)),
       operator_(specimen_.mesh, damped_),
       assembled_(operator_, MATBAIJ),
       naive_(specimen_.mesh.cells.front().nodes, specimen_.mesh.rest_positions, material),
@@ -98,7 +111,8 @@ ElementSubject::ElementSubject(MPI_Comm comm, CellType type, int divisions)
       result_(specimen_.mesh),
       plain_(elastic(specimen_, DampingModel::none)) {}
 
-HexSubject::HexSubject(MPI_Comm comm, int divisions) : ElementSubject(comm, CellType::hex8, divisions) {
+HexSubject::HexSubject(MPI_Comm comm, int divisions)
+    : ElementSubject(comm, CellType::hex8, divisions), fibres_(fibre_forces(specimen_)) {
   const auto& cells = specimen_.mesh.cells.front();
   general_ =
       make_elastic_block({cells.type, cells.nodes, cells.interior, density}, specimen_.mesh.rest_positions,

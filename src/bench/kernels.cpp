@@ -25,6 +25,18 @@ KernelCost with_nodes(KernelCost cells, double nodes_per_item) {
   return {cells.flops, cells.divisions, cells.bytes + nodes_per_item * nodal_bytes};
 }
 
+/// The force of a model with fibres.
+Kernel fibre_kernel(const std::string& key, CellType type, const Material& material, double points,
+                    double nodes_per_point, std::function<void()> force) {
+  const auto model = std::visit([](const auto& one) { return std::string(one.name); }, material);
+  return {key,
+          std::string(name_of(type)) + " force, " + model,
+          type == CellType::tet4 ? "Mtet/s" : "Mpoint/s",
+          {points, std::move(force)},
+          Yardstick::naive,
+          with_nodes(force_cost(type, material), nodes_per_point)};
+}
+
 /// The force of one element.
 Kernel force_kernel(const std::string& key, CellType type, ElementSubject& cells) {
   const auto cost = with_nodes(force_cost(type, DampingModel::none), cells.nodes_per_point());
@@ -50,6 +62,14 @@ std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes, ElementSubje
        Yardstick::naive,
        with_nodes(force_cost(CellType::tet4, DampingModel::rotated), nodes)},
       force_kernel("hex_force_mqps", CellType::hex8, hexes),
+      fibre_kernel("tet_muscle_mps", CellType::tet4, bench_muscle(), tets.cells(), nodes,
+                   [&] { tets.muscle_force(); }),
+      fibre_kernel("tet_tendon_mps", CellType::tet4, bench_tendon(), tets.cells(), nodes,
+                   [&] { tets.tendon_force(); }),
+      fibre_kernel("hex_muscle_mqps", CellType::hex8, bench_muscle(), hexes.points(), hexes.nodes_per_point(),
+                   [&] { hexes.muscle_force(); }),
+      fibre_kernel("hex_tendon_mqps", CellType::hex8, bench_tendon(), hexes.points(), hexes.nodes_per_point(),
+                   [&] { hexes.tendon_force(); }),
       force_kernel("wedge6_force_mqps", CellType::wedge6, wedges),
       force_kernel("tet10_force_mqps", CellType::tet10, quadratic),
       {"general_path_mqps",

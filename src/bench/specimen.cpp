@@ -17,8 +17,8 @@ constexpr double twist = 0.01;            // [rad/m]
 constexpr double stretch = 1.1;           // along the axis of the twist
 constexpr double position_noise = 0.305;  // [m] standard deviation; chosen for 8 % inverted tetrahedra
 
-/// Random numbers of a node that depend on nothing but its number, so that every partition sees the same
-/// body. The mixer is splitmix64 (Steele, Lea, Flood 2014).
+/// Random numbers of a node (or cell) that depend on nothing but its number, so that every partition sees the
+/// same body. The mixer is splitmix64 (Steele, Lea, Flood 2014).
 class NodeRandom {
  public:
   NodeRandom(GlobalIndex node, std::uint64_t purpose)
@@ -43,7 +43,7 @@ class NodeRandom {
   std::uint64_t state_;
 };
 
-enum Purpose : std::uint64_t { rest, shake, velocity };
+enum Purpose : std::uint64_t { rest, shake, velocity, fibre };
 
 BoxCells cells_for(CellType type) {
   if (type == CellType::hex8) return BoxCells::hex8;
@@ -60,6 +60,13 @@ DistributedMesh jittered_box(MPI_Comm comm, CellType type, int divisions) {
       NodeRandom random(node, rest);
       for (double& x : mesh.nodes[static_cast<std::size_t>(node)].components)
         x += jitter * (2 * random.uniform() - 1);
+    }
+    GlobalIndex cell = 0;
+    for (auto& block : mesh.cells) {
+      for (GlobalIndex i = 0; i < block.size(); ++i) {
+        const Vec3d any = NodeRandom(cell++, fibre).normal3();
+        block.vectors.push_back((1 / norm(any)) * any);
+      }
     }
     if (type == CellType::tet10) make_quadratic(mesh);
   });

@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/materials/damping.hpp"
+#include "evert/materials/material.hpp"
 #include "evert/mesh/mesh.hpp"
 
 /// What the kernels cost at least, to be held against what the machine can do.
@@ -19,6 +20,8 @@ struct KernelCost {
 
 /// ElasticForces::update of neo-Hookean cells.
 [[nodiscard]] KernelCost force_cost(CellType type, DampingModel damping);
+/// The same of tet4 or hex8, without damping, of any model.
+[[nodiscard]] KernelCost force_cost(CellType type, const Material& material);
 /// The same of hexahedra on the path of models that need U and V.
 [[nodiscard]] KernelCost general_path_cost();
 /// ElasticForces::add_damping, `rotated`, tet4.
