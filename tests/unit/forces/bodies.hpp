@@ -218,6 +218,7 @@ inline std::string name_of(const Material& material) {
 
 inline constexpr Damping rotated_damping{DampingModel::rotated, 30, 20};
 inline constexpr Damping objective_damping{DampingModel::objective, 30, 20};
+inline constexpr Damping blended_damping{DampingModel::blended, 30, 20};
 inline constexpr Damping no_damping{};
 
 /// The kernels compiled here for scalars: what every level must agree with.

@@ -7,11 +7,13 @@
 namespace evert::test {
 namespace {
 
-constexpr std::array both_models{rotated_damping, objective_damping};
+constexpr std::array all_models{rotated_damping, objective_damping, blended_damping};
 
 std::string label(const Body& body, const Damping& damping, const std::string& state) {
-  return std::string(evert::name_of(body.type)) +
-         (damping.model == DampingModel::rotated ? ", rotated, " : ", objective, ") + state;
+  const std::string model = damping.model == DampingModel::rotated     ? ", rotated, "
+                            : damping.model == DampingModel::objective ? ", objective, "
+                                                                       : ", blended, ";
+  return std::string(evert::name_of(body.type)) + model + state;
 }
 
 Body small_body(CellType type) { return type == CellType::tet4 ? box(type, 2, 2, 1) : box(type, 3, 2, 1); }
@@ -51,7 +53,7 @@ Eigen::MatrixXd assembled(const ElasticBlock& block, std::size_t nodes) {
 TEST(Damping, IsSymmetricAndPositiveSemidefinite) {
   for (const CellType type : all_elements) {
     const Body body = small_body(type);
-    for (const Damping& damping : both_models) {
+    for (const Damping& damping : all_models) {
       const auto block =
           make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, damping);
       for (const State& state : awkward_states(body)) {
@@ -63,7 +65,7 @@ TEST(Damping, IsSymmetricAndPositiveSemidefinite) {
         const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(c).eigenvalues();
         EXPECT_GE(eigenvalues.minCoeff(), -1e-13 * eigenvalues.maxCoeff())
             << label(body, damping, state.name);
-        if (damping.model == DampingModel::rotated) {
+        if (damping.model != DampingModel::objective) {
           EXPECT_GT(scale, 0) << "robust when flat";
         }
       }
@@ -74,7 +76,7 @@ TEST(Damping, IsSymmetricAndPositiveSemidefinite) {
 TEST(Damping, DenseMatricesAndDiagonalBlocksEqualTheProduct) {
   for (const CellType type : all_elements) {
     const Body body = small_body(type);
-    for (const Damping& damping : both_models) {
+    for (const Damping& damping : all_models) {
       for (const auto& level : supported_levels()) {
         const auto block = level_block(level, body, NeoHookean{.lame = soft}, damping, 4);
         for (const State& state : awkward_states(body)) {
@@ -104,12 +106,12 @@ TEST(Damping, DenseMatricesAndDiagonalBlocksEqualTheProduct) {
 }
 
 /// PHYSICS 4, written out once more: P = U P̂ Vᵀ with P̂ = β(Ḟ̂ + Ḟ̂ᵀ) + α tr(Ḟ̂) I, Ḟ̂ = Uᵀ Ḟ V; and
-/// P = F(2βĖ + α tr(Ė) I).
+/// P = F(2βĖ + α tr(Ė) I); blended with A in the place of both.
 TEST(Damping, IsTheLawOfThePaper) {
   for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
-    for (const Damping& damping : both_models) {
+    for (const Damping& damping : all_models) {
       const auto block =
           make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, damping);
       for (const State& state : awkward_states(body)) {
@@ -129,9 +131,18 @@ TEST(Damping, IsTheLawOfThePaper) {
                     moving += outer(at_node(v, node), element.gradients[q][a]);
                   }
                   const Mat3d f = now * inverse(rest), rate = moving * inverse(rest);
+                  const auto [u, sigma, w] = svd3(f);
                   Mat3d stress;
-                  if (damping.model == DampingModel::rotated) {
-                    const auto [u, sigma, w] = svd3(f);
+                  if (damping.model == DampingModel::blended) {
+                    double objective_share = 1;
+                    for (const double s : sigma.components) {
+                      const double from_flat = std::clamp((s - 0.1) / 0.4, 0.0, 1.0);
+                      objective_share *= 3 * std::pow(from_flat, 2) - 2 * std::pow(from_flat, 3);
+                    }
+                    const Mat3d a = objective_share * f + (1 - objective_share) * u * transpose(w);
+                    stress = a * (damping.beta * (transpose(rate) * a + transpose(a) * rate) +
+                                  damping.alpha * trace(transpose(a) * rate) * identity<double>());
+                  } else if (damping.model == DampingModel::rotated) {
                     const Mat3d turned = transpose(u) * rate * w;
                     stress = u *
                              (damping.beta * (turned + transpose(turned)) +
@@ -169,7 +180,7 @@ TEST(Damping, LeavesRigidMotionAlone) {
   for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues drift = nodal_values(std::vector<Vec3d>(body.rest.size(), Vec3d{1, -2, 3}));
-    for (const Damping& damping : both_models) {
+    for (const Damping& damping : all_models) {
       const auto block =
           make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, damping);
       for (const State& state : awkward_states(body)) {
@@ -177,7 +188,7 @@ TEST(Damping, LeavesRigidMotionAlone) {
         EXPECT_EQ(largest(damping_product(*block, drift)), 0) << label(body, damping, state.name);
         const double scale = largest(damping_product(*block, random_velocities(body.rest.size())));
         const NodalValues turning = damping_product(*block, rotating(body, state.x, {1, -2, 3}));
-        // `rotated` sees rotation unless the point is scaled uniformly.
+        // `rotated` sees rotation unless the point is scaled uniformly, `blended` where flat or inverted.
         if (damping.model == DampingModel::objective) {
           EXPECT_LE(largest(turning), 1e-13 * (scale + 1)) << label(body, damping, state.name);
         }
@@ -196,7 +207,7 @@ TEST(Damping, ConservesMomentumAndObjectiveAlsoAngularMomentum) {
   for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
-    for (const Damping& damping : both_models) {
+    for (const Damping& damping : all_models) {
       const auto block =
           make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, damping);
       for (const State& state : awkward_states(body)) {
@@ -216,6 +227,83 @@ TEST(Damping, ConservesMomentumAndObjectiveAlsoAngularMomentum) {
   }
 }
 
+/// The torque about the origin that damping exerts, as a share of the sum of |x| |f|.
+double torque_share(const Body& body, const Damping& damping, const NodalValues& x) {
+  const auto block = make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, damping);
+  forces(*block, x);
+  const NodalValues force = damping_product(*block, random_velocities(body.rest.size()));
+  Vec3d torque{};
+  double scale = 0;
+  for (std::size_t node = 0; node < body.rest.size(); ++node) {
+    torque += cross(at_node(x, node), at_node(force, node));
+    scale += norm(at_node(x, node)) * norm(at_node(force, node));
+  }
+  return norm(torque) / scale;
+}
+
+/// Stretches above blend_end: nothing of `rotated` is left, nor of its torque.
+TEST(Damping, BlendedConservesAngularMomentumAtModerateDeformation) {
+  for (const CellType type : all_elements) {
+    const Body body = small_body(type);
+    const Mat3d turn = rotation(2);
+    const auto stretched = [&](double least) {
+      return deformed(body, [&](const Vec3d& p) { return turn * Vec3d{1.5 * p[0], p[1], least * p[2]}; });
+    };
+    const auto moderate = stretched(blend_end * (1 + 1e-12)), flat = stretched(0.2);
+    EXPECT_LE(torque_share(body, blended_damping, moderate), 1e-14) << evert::name_of(type);
+    EXPECT_GE(torque_share(body, rotated_damping, moderate), 1e-4) << evert::name_of(type);
+    EXPECT_GE(torque_share(body, blended_damping, flat), 1e-4) << evert::name_of(type);
+    EXPECT_LE(torque_share(body, objective_damping, flat), 1e-14) << evert::name_of(type);
+  }
+}
+
+/// C along a path through flat into the inverted has no kink: its second differences are of the second order.
+TEST(Damping, BlendedIsSmoothOnTheWayThroughFlat) {
+  const Body body = small_body(CellType::tet4);
+  const auto block =
+      make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, blended_damping);
+  const auto at = [&](double least, double middle) {
+    forces(*block, deformed(body, [&](const Vec3d& p) {
+      return Vec3d{1.5 * p[0], middle * p[1], least * p[2]};
+    }));
+    return damping_product(*block, random_velocities(body.rest.size()));
+  };
+  const auto second_difference = [&](double least, double h, bool equal) {
+    const auto of = [&](double s) { return at(s, equal ? s : 1.1); };
+    const auto before = of(least - h), here = of(least), after = of(least + h);
+    double most = 0;
+    for (std::size_t i = 0; i + 1 < here.size(); ++i)
+      most = std::max(most, std::abs(before[i] - 2 * here[i] + after[i]));
+    return most;
+  };
+  for (const bool equal : {false, true}) {  // the two smaller stretches
+    for (int i = 0; i <= 24; ++i) {
+      const double least = (equal ? 0.05 : -0.6) + 0.05 * i;
+      // A kink would make it half of the larger, not a quarter.
+      EXPECT_LE(second_difference(least, 1e-4, equal), 0.3 * second_difference(least, 2e-4, equal) + 1e-9)
+          << least;
+    }
+  }
+}
+
+TEST(Damping, BlendedIsRotatedWhenFlatOrInverted) {
+  for (const CellType type : all_elements) {
+    const Body body = small_body(type);
+    const NodalValues v = random_velocities(body.rest.size());
+    for (const double least : {blend_begin, 0.0, -1.2}) {
+      const auto x = deformed(body, [&](const Vec3d& p) { return Vec3d{1.5 * p[0], p[1], least * p[2]}; });
+      NodalValues products[2];
+      for (const auto& damping : {rotated_damping, blended_damping}) {
+        const auto block =
+            make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = soft}, damping);
+        forces(*block, x);
+        products[damping.model == DampingModel::rotated ? 0 : 1] = damping_product(*block, v);
+      }
+      EXPECT_LE(largest_difference(products[0], products[1]), 1e-13 * largest(products[0])) << least;
+    }
+  }
+}
+
 TEST(Damping, ObjectiveVanishesWhenFlat) {
   const Body body = small_body(CellType::tet4);
   const auto block =
@@ -228,7 +316,7 @@ TEST(Damping, PacksAgreeWithScalars) {
   for (const CellType type : all_elements) {
     const Body body = small_body(type);
     const NodalValues v = random_velocities(body.rest.size());
-    for (const Damping& damping : both_models) {
+    for (const Damping& damping : all_models) {
       const auto scalar = scalar_block(body, NeoHookean{.lame = soft}, damping);
       for (const auto& level : supported_levels()) {
         const auto block = level_block(level, body, NeoHookean{.lame = soft}, damping, 5);

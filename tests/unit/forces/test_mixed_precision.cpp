@@ -112,7 +112,7 @@ TEST(MixedPrecision, DampingIsNearThatInDouble) {
       for (std::size_t i = 0; i + 1 < a.size(); ++i) sum += a[i] * b[i];
       return sum;
     };
-    for (const Damping& damping : {rotated_damping, objective_damping}) {
+    for (const Damping& damping : {rotated_damping, objective_damping, blended_damping}) {
       const auto mixed = mixed_block(body, NeoHookean{.lame = soft}, damping);
       const auto full = full_block(body, NeoHookean{.lame = soft}, damping);
       for (const State& state : awkward_states(body)) {

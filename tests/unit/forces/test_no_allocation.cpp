@@ -39,7 +39,7 @@ TEST(Allocation, NoneInAStep) {
     std::vector<double> normal(3 * body.rest.size()),
         shear = normal, stretch(static_cast<std::size_t>(body.cells())), dense(30 * 30);
     for (const Material& material : all_materials()) {
-      for (const Damping& damping : {rotated_damping, objective_damping}) {
+      for (const Damping& damping : {rotated_damping, objective_damping, blended_damping}) {
         const long before_making = allocations;
         const auto block = make_elastic_block(body.elastic_cells(5), body.rest, material, damping);
         ASSERT_GT(allocations, before_making) << "the counter counts";

@@ -124,7 +124,7 @@ TEST(StableStep, OfOneDampedTetrahedronAtRestIsExact) {
   const Body body = one_tet();
   const Lame lame = Lame::from_young_poisson(1e4, 0.3);
   for (const double time : {1e-5, 1e-3, 1e-1}) {
-    for (const DampingModel model : {DampingModel::rotated, DampingModel::objective}) {
+    for (const DampingModel model : {DampingModel::rotated, DampingModel::objective, DampingModel::blended}) {
       const Damping damping = Damping::stiffness_proportional(model, time, lame.lambda, lame.mu);
       const auto block =
           make_elastic_block(body.elastic_cells(), body.rest, NeoHookean{.lame = lame}, damping);
@@ -324,7 +324,7 @@ TEST(StableStep, LevelsAndScalarsAgree) {
   for (const CellType type : all_elements) {
     const Body body = box(type, 3, 2, 1);
     for (const Material& material : all_materials()) {
-      for (const Damping& damping : {rotated_damping, objective_damping}) {
+      for (const Damping& damping : {rotated_damping, objective_damping, blended_damping}) {
         const auto scalar = scalar_block(body, material, damping);
         for (const auto& level : supported_levels()) {
           const auto block = level_block(level, body, material, damping, 3);

@@ -4,11 +4,11 @@
 
 /// The damping operator C(x), matrix-free.  paper A, section 6.2; PHYSICS 4
 ///
-/// Both models are one law, P = A (β (ḞᵀA + AᵀḞ) + α tr(AᵀḞ) I), with A = Q = U Vᵀ (rotated) or A = F
-/// (objective). Kept of each point is A, 9 numbers. Where A is a rotation less work remains when the shape
-/// gradients h_a = √V Q ∂N_a/∂X are kept instead: with L = Σ v_a h_aᵀ the damping force on node a is −S h_a,
-/// S = β (L + Lᵀ) + α tr(L) I. Of a tetrahedron, and of a tensor product, whose (∂X/∂ξ)⁻¹ is turned and
-/// scaled (W = √V (∂X/∂ξ)⁻¹ Qᵀ), these are 9 numbers too.
+/// All models are one law, P = A (β (ḞᵀA + AᵀḞ) + α tr(AᵀḞ) I), with A = Q = U Vᵀ (rotated), A = F
+/// (objective) or A = F + w (Q − F) (blended). Kept of each point is A, 9 numbers. Where A is a rotation less
+/// work remains when the shape gradients h_a = √V Q ∂N_a/∂X are kept instead: with L = Σ v_a h_aᵀ the damping
+/// force on node a is −S h_a, S = β (L + Lᵀ) + α tr(L) I. Of a tetrahedron, and of a tensor product, whose
+/// (∂X/∂ξ)⁻¹ is turned and scaled (W = √V (∂X/∂ξ)⁻¹ Qᵀ), these are 9 numbers too.
 namespace evert::kernels {
 
 template <const auto& element, DampingModel damping>
@@ -52,6 +52,22 @@ EVERT_ALWAYS_INLINE auto damping_shape(const BlockArrays& block, LocalIndex batc
   }
 }
 
+/// A of point i of a diagonalised run. That of `blended` is written as what is added to F, so that nothing
+/// is where w = 0.
+template <Real T, DampingModel damping>
+EVERT_ALWAYS_INLINE Mat3<T> damping_frame(const PointRun<T>& run, std::size_t i) {
+  if constexpr (damping == DampingModel::rotated) {
+    return polar_rotation(run.left[i], run.plane[i], run.right[i]);
+  } else if constexpr (damping == DampingModel::objective) {
+    return run.deformation_gradient[i];
+  } else {
+    const Vec3<T> sigma = principal_stretches(run.plane[i]);
+    const Vec3<T> to_rotation = rotated_share(sigma) * (Vec3<T>{T(1.0), T(1.0), T(1.0)} - sigma);
+    return run.deformation_gradient[i] +
+           isotropic_tensor(run.left[i], run.plane[i], run.right[i], to_rotation);
+  }
+}
+
 /// Keeps what C(x) needs of a diagonalised run.
 template <Real T, const auto& element, DampingModel damping>
 EVERT_STAGE void keep_damping_state(const BlockArrays& block, BatchRange batches, const PointRun<T>& run) {
@@ -60,9 +76,7 @@ EVERT_STAGE void keep_damping_state(const BlockArrays& block, BatchRange batches
     const CellBatch<T, element> batch(block, b);
     const DampingState<T, element, damping> state(block, b);
     for (std::size_t q = 0; q < batch.points; ++q, ++i) {
-      const Mat3<T> frame = damping == DampingModel::rotated
-                                ? polar_rotation(run.left[i], run.plane[i], run.right[i])
-                                : run.deformation_gradient[i];
+      const Mat3<T> frame = damping_frame<T, damping>(run, i);
       if constexpr (keeps_rotated_gradients<element, damping>) {
         batch.shape.store_transformed(q, sqrt(batch.volume(q)) * frame, state.numbers);
       } else {

@@ -40,6 +40,8 @@ constexpr ElasticKernels kernels_of(DampingModel damping) {
       return kernels_of<T, element, Model, DampingModel::rotated>();
     case DampingModel::objective:
       return kernels_of<T, element, Model, DampingModel::objective>();
+    case DampingModel::blended:
+      return kernels_of<T, element, Model, DampingModel::blended>();
     case DampingModel::none:
       break;
   }

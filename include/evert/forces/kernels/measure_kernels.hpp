@@ -275,6 +275,17 @@ EVERT_ALWAYS_INLINE TangentBound<T> bound_at(const Model& model, const BlockArra
   }
 }
 
+/// The share of τ that is left at a point: C contains the square of A, and what of it the models that vanish
+/// when flat have less than `rotated` is as the square of its smallest principal value.
+template <Real T>
+EVERT_ALWAYS_INLINE T remaining_damping(DampingModel model, const PlaneRemainder<T>& plane) {
+  if (model != DampingModel::objective && model != DampingModel::blended) return T(1.0);
+  T smallest = min(max(smallest_stretch(plane), T(0.0)), T(1.0));
+  if (model == DampingModel::blended)
+    smallest += rotated_share(principal_stretches(plane)) * (T(1.0) - smallest);
+  return smallest * smallest;
+}
+
 /// See ElasticBlock::stable_step.
 template <Real T, const auto& element, class Model>
 StableStep stable_step(const BlockArrays& block, const Material& material, const Damping& damping,
@@ -291,12 +302,7 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
       const auto first_lane = static_cast<std::size_t>(place.batch) * lanes_v<T>;
       const T stiffness = load_floats<T>(block.rest_stiffness + first_lane);
       const T spin_stiffness = load_floats<T>(block.spin_stiffness + first_lane);
-      T credited = time;
-      if (damping.model == DampingModel::objective) {
-        // Vanishes when flat: scaled by the smallest stretch squared, like its operator.
-        const T remaining = min(max(smallest_stretch(run.plane[i]), T(0.0)), T(1.0));
-        credited *= remaining * remaining;
-      }
+      const T credited = time * remaining_damping(damping.model, run.plane[i]);
       const BatchSteps<T> steps = stable_steps(bound_at<T, element>(model, block, place, run, i), stiffness,
                                                spin_stiffness, credited);
       undamped = min(undamped, steps.undamped);
