@@ -59,12 +59,29 @@ std::string activation_text(const ActivationConfig& keys) {
                    keys.front().time, keys.back().value, keys.back().time, keys.size());
 }
 
+/// Of the rate of strain.
+std::string strain_damping_text(const DampingConfig& damping) {
+  const std::string model = damping.model == DampingModel::rotated     ? "rotated"
+                            : damping.model == DampingModel::objective ? "objective"
+                                                                       : "blended";
+  if (damping.stiffness_proportional)
+    return model + formatted(" damping, stiffness-proportional %g s", *damping.stiffness_proportional);
+  if (damping.stiffness_ratio)
+    return model +
+           formatted(" damping, stiffness ratio %g at %g Hz", *damping.stiffness_ratio, damping.frequency);
+  return model + formatted(" damping, alpha %g, beta %g Pa s", damping.alpha, damping.beta);
+}
+
 std::string damping_text(const std::optional<DampingConfig>& damping) {
-  if (!damping || damping->model == DampingModel::none) return "undamped";
-  const std::string model = damping->model == DampingModel::rotated ? "rotated" : "objective";
-  if (damping->stiffness_proportional)
-    return model + formatted(" damping, stiffness-proportional %g s", *damping->stiffness_proportional);
-  return model + formatted(" damping, alpha %g, beta %g Pa s", damping->alpha, damping->beta);
+  std::vector<std::string> parts;
+  if (damping && damping->model != DampingModel::none) parts.push_back(strain_damping_text(*damping));
+  if (damping && damping->mass_proportional)
+    parts.push_back(formatted("mass-proportional damping %g /s", *damping->mass_proportional));
+  if (damping && damping->mass_ratio)
+    parts.push_back(
+        formatted("mass-proportional damping, ratio %g at %g Hz", *damping->mass_ratio, damping->frequency));
+  if (parts.empty()) return "undamped";
+  return parts.size() == 1 ? parts[0] : parts[0] + ", " + parts[1];
 }
 
 /// Writes "title   text", the title only when it differs from the line before.

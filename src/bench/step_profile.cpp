@@ -4,6 +4,7 @@
 #include "evert/core/collective.hpp"
 
 #include "kernel_subjects.hpp"
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <numeric>
@@ -28,7 +29,10 @@ KernelCost cost_of_call(Phase phase, const Simulation& simulation) {
   KernelCost cost;
   if (phase != Phase::force && phase != Phase::damping_apply) return cost;
   const auto& mesh = simulation.mesh();
-  const auto model = simulation.elastic().damped() ? DampingModel::rotated : DampingModel::none;
+  const auto& blocks = simulation.elastic().blocks();
+  const bool damped = std::ranges::any_of(
+      blocks, [](const auto& block) { return block != nullptr && block->damped(); });  // not by mass alone
+  const auto model = damped ? DampingModel::rotated : DampingModel::none;
   const auto add = [&](const KernelCost& of_item, double items) {
     cost.flops += of_item.flops * items;
     cost.divisions += of_item.divisions * items;
@@ -37,7 +41,7 @@ KernelCost cost_of_call(Phase phase, const Simulation& simulation) {
   for (const auto& cells : mesh.cells) {
     const auto points = static_cast<double>(cells.size()) * quadrature_points(cells.type);
     if (phase == Phase::force) add(force_cost(cells.type, model), points);
-    if (phase == Phase::damping_apply && cells.type == CellType::tet4) add(damping_cost(), points);
+    if (phase == Phase::damping_apply && damped && cells.type == CellType::tet4) add(damping_cost(), points);
   }
   cost.bytes += nodal_bytes * static_cast<double>(mesh.local_nodes());
   return cost;

@@ -58,25 +58,42 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   };
   on_every_rank(mesh.comm, [&] {
     for (const auto& cells : mesh.cells) {
-      const auto& [density, material, damping, precision] = properties_of(cells);
-      blocks_.push_back(cells.size() == 0 ? nullptr
-                                          : make_elastic_block(cells_of(cells, density), mesh.rest_positions,
-                                                               material, damping, precision));
-      damped_ = damped_ || damping.model != DampingModel::none;
+      const auto& of_cells = properties_of(cells);
+      blocks_.push_back(cells.size() == 0
+                            ? nullptr
+                            : make_elastic_block(cells_of(cells, of_cells.density), mesh.rest_positions,
+                                                 of_cells.material, of_cells.damping, of_cells.precision));
+      damped_ = damped_ || of_cells.damping.model != DampingModel::none;
     }
   });
 
-  std::vector<double> local_masses(static_cast<std::size_t>(mesh.local_nodes()));
-  for (const auto& cells : mesh.cells)
-    add_lumped_mass(cells_of(cells, properties_of(cells).density), mesh.rest_positions, local_masses);
+  std::vector<double> densities;
+  for (const auto& of_region : properties) densities.push_back(of_region.density);
+  masses_ = lumped(densities);
+  balance_masses(mesh_, halo_, masses_, blocks_);
+
+  const auto has_mass_damping = [](const ElasticProperties& p) {
+    return p.mass_proportional_damping.has_value();
+  };
+  if (std::ranges::none_of(properties, has_mass_damping)) return;
+  damped_ = true;
+  for (const auto& of_region : properties)
+    damped_densities_.push_back(of_region.density * of_region.mass_proportional_damping.value_or(0));
+  mass_damping_ = lumped(damped_densities_);
+}
+
+std::vector<double> ElasticForces::lumped(std::span<const double> densities) {
+  std::vector<double> local(static_cast<std::size_t>(mesh_.local_nodes()));
+  for (const auto& cells : mesh_.cells)
+    add_lumped_mass(cells_of(cells, densities[static_cast<std::size_t>(cells.region)]), mesh_.rest_positions,
+                    local);
   auto summed = scratch_.local();
-  for (std::size_t i = 0; i < summed.size(); ++i) summed[i] = local_masses[i / 3];
+  for (std::size_t i = 0; i < summed.size(); ++i) summed[i] = local[i / 3];
   halo_.begin_add(scratch_);
   halo_.end_add(scratch_);
-  masses_.resize(static_cast<std::size_t>(mesh.owned_nodes));
-  for (std::size_t i = 0; i < masses_.size(); ++i) masses_[i] = summed[3 * i];
-
-  balance_masses(mesh_, halo_, masses_, blocks_);
+  std::vector<double> owned(static_cast<std::size_t>(mesh_.owned_nodes));
+  for (std::size_t i = 0; i < owned.size(); ++i) owned[i] = summed[3 * i];
+  return owned;
 }
 
 void ElasticForces::update(NodeField& x, NodeField& f) {
@@ -91,6 +108,8 @@ void ElasticForces::update(NodeField& x, NodeField& f) {
 void ElasticForces::add_damping(NodeField& v, NodeField& out, double factor) const {
   const PhaseScope scope(Phase::damping_apply, damping_flops * points_of(mesh_));
   clear(out.local().subspan(out.owned().size()));
+  for (std::size_t i = 0; i < 3 * mass_damping_.size(); ++i)
+    out.owned()[i] += factor * mass_damping_[i / 3] * v.owned()[i];
   overlapped(halo_, blocks_, v, out, [&](const ElasticBlock& block, BatchRange batches) {
     if (block.damped()) block.add_damping(v.local().data(), out.local().data(), factor, batches);
   });
@@ -108,6 +127,7 @@ void ElasticForces::damping_diagonal(NodeField& normal, NodeField& shear) const 
     halo_.begin_add(*field);
     halo_.end_add(*field);
   }
+  for (std::size_t i = 0; i < 3 * mass_damping_.size(); ++i) normal.owned()[i] += mass_damping_[i / 3];
 }
 
 double ElasticForces::energy(const NodeField& x) const {
@@ -157,6 +177,10 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
     if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
       blocks_[i]->set_material(properties.material, properties.damping);
   balance_masses(mesh_, halo_, masses_, blocks_);
+  if (damped_densities_.empty()) return;
+  damped_densities_[static_cast<std::size_t>(region)] =
+      properties.density * properties.mass_proportional_damping.value_or(0);
+  mass_damping_ = lumped(damped_densities_);
 }
 
 void ElasticForces::set_activation(std::int32_t region, double activation) {
@@ -165,7 +189,7 @@ void ElasticForces::set_activation(std::int32_t region, double activation) {
 }
 
 std::size_t ElasticForces::memory() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = mass_damping_.capacity() * sizeof(double);
   for (const auto& block : blocks_)
     if (block != nullptr) bytes += block->memory();
   return bytes;

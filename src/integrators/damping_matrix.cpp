@@ -154,10 +154,13 @@ void AssembledDamping::assemble() {
     add_cell(mat_.get());
   });
   const auto mass = damping_.elastic().masses();
-  cell_.assign(unit_block.begin(), unit_block.end());
+  const auto mass_damping = damping_.elastic().mass_damping();
   for (std::size_t node = 0; node < mass.size(); ++node) {
     rows_.assign(1, static_cast<PetscInt>(node));
-    for (std::size_t k = 0; k < 9; k += 4) cell_[k] = mass[node];
+    cell_.assign(9, 0.0);
+    const double damped = mass_damping.empty() ? 0.0 : damping_.factor() * mass_damping[node];
+    for (std::size_t k = 0; k < 9; ++k)  // P is symmetric: its order is of no matter
+      cell_[k] = mass[node] * unit_block[k] + damped * projectors_[k / 3].owned()[3 * node + k % 3];
     add_cell(mat_.get());
   }
   check(MatAssemblyBegin(mat_.get(), MAT_FINAL_ASSEMBLY));

@@ -39,8 +39,10 @@ StepReport Newmark::advance(System& system, double dt) {
   StepReport report{.dt = dt};
   report.cg_iterations = predict(system, dt);
   const auto held = collide(system, dt);
+  if (!held.colliding) account_for_mass_damping(system, dt / 2);
   report.cg_iterations += correct(system, dt, held.colliding);
   if (held.colliding || held.prescribed) report.cg_iterations += rub(system);
+  account_for_mass_damping(system, implicit_);
   remember_change(system, system.v.owned(), predicted_.owned());
   report.contacts = system.collisions.contacts();
   system.time += dt;
@@ -148,6 +150,14 @@ int Newmark::rub(System& system) {
   system.impulses.contact +=
       exerted(constraints_) - by_prescription + collisions.friction() + collisions.impulse();
   return iterations;
+}
+
+/// What mass-proportional damping takes off the momentum in a time `dt` at the present velocities.
+void Newmark::account_for_mass_damping(System& system, double dt) {
+  const auto damping = system.elastic.mass_damping();
+  for (std::size_t node = 0; node < damping.size(); ++node)
+    system.impulses.damping -=
+        dt * damping[node] * node_value(system.v.owned(), static_cast<std::ptrdiff_t>(node));
 }
 
 /// C(x) and its diagonal are those of the last force update, whoever asked for it.

@@ -41,6 +41,9 @@ constexpr std::array columns{
     Column{"constraint_impulse_x [N s]", [](const Measurements& m) { return m.constraint_impulse[0]; }},
     Column{"constraint_impulse_y [N s]", [](const Measurements& m) { return m.constraint_impulse[1]; }},
     Column{"constraint_impulse_z [N s]", [](const Measurements& m) { return m.constraint_impulse[2]; }},
+    Column{"damping_impulse_x [N s]", [](const Measurements& m) { return m.damping_impulse[0]; }},
+    Column{"damping_impulse_y [N s]", [](const Measurements& m) { return m.damping_impulse[1]; }},
+    Column{"damping_impulse_z [N s]", [](const Measurements& m) { return m.damping_impulse[2]; }},
     Column{"inverted_points", [](const Measurements& m) { return static_cast<double>(m.inverted_points); }},
 };
 // clang-format on

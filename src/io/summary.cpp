@@ -75,6 +75,7 @@ JsonValue final_state(const Measurements& m) {
                             {"gravity_impulse", vector3(m.gravity_impulse)},
                             {"contact_impulse", vector3(m.contact_impulse)},
                             {"constraint_impulse", vector3(m.constraint_impulse)},
+                            {"damping_impulse", vector3(m.damping_impulse)},
                             {"inverted_points", m.inverted_points}});
 }
 

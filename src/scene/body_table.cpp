@@ -55,14 +55,30 @@ const Table<StartConfig>& start_table() {
 }
 
 void check_damping(const DampingConfig& damping, const Value& map, const std::string& path) {
-  const bool by_coefficients = map.find("alpha") != nullptr || map.find("beta") != nullptr;
-  if (damping.model != DampingModel::none && damping.stiffness_proportional.has_value() == by_coefficients)
-    fail(map, path, "needs either 'stiffness_proportional' [s] or 'alpha' and 'beta' [Pa s]");
+  const auto has = [&](const char* key) { return map.find(key) != nullptr ? 1 : 0; };
+  const int ways = has("stiffness_proportional") + has("stiffness_ratio") + (has("alpha") | has("beta"));
+  if (damping.model != DampingModel::none && ways != 1)
+    fail(
+        map, path,
+        "needs one of 'stiffness_proportional' [s], 'stiffness_ratio' at a 'frequency' [Hz], and 'alpha' and "
+        "'beta' [Pa s]");
+  if (has("mass_proportional") + has("mass_ratio") > 1)
+    fail(map, path, "may have 'mass_proportional' [1/s] or 'mass_ratio', not both");
+  const int ratios = has("stiffness_ratio") + has("mass_ratio");
+  if (ratios > 0 && has("frequency") == 0)
+    fail(map, path, "needs the 'frequency' [Hz] that its damping ratio is meant at");
+  if (ratios == 0 && has("frequency") != 0)
+    fail(*map.find("frequency"), join(path, "frequency"),
+         "goes with 'stiffness_ratio' or 'mass_ratio', and none is there");
+}
+
+bool damps_nothing(const DampingConfig& damping) {
+  return damping.model == DampingModel::none && !damping.mass_proportional && !damping.mass_ratio;
 }
 
 /// What the scene switches off by "none" is not there. (A group keeps it: it differs from a damped body.)
 void drop_what_is_none(BodyConfig& body, const Value& /*map*/, const std::string& /*path*/) {
-  if (body.damping && body.damping->model == DampingModel::none) body.damping.reset();
+  if (body.damping && damps_nothing(*body.damping)) body.damping.reset();
   if (body.start && body.start->kind == StartKind::none) body.start.reset();
 }
 
@@ -84,18 +100,34 @@ const Table<GroupConfig>& group_table() {
 
 const Table<DampingConfig>& damping_table() {
   static const auto table =
-      Table<DampingConfig>("Viscous damping of the rate of strain, taken implicitly.")
+      Table<DampingConfig>(
+          "Viscous damping, taken implicitly: of the rate of strain, and of velocity where a mass key is "
+          "given.")
           .required("model", &DampingConfig::model,
                     one_of<DampingModel>(
                         {{"rotated", DampingModel::rotated, "robust when flat"},
                          {"objective", DampingModel::objective, "keeps angular momentum; vanishes when flat"},
-                         {"none", DampingModel::none, "as without 'damping'"}}),
+                         {"blended", DampingModel::blended,
+                          "objective where no stretch is below 0.5, rotated where one is below 0.1, smooth "
+                          "between"},
+                         {"none", DampingModel::none, "not at all"}}),
                     "rotated", "How the damping stress follows from the rate of strain.")
           .either("stiffness_proportional", &DampingConfig::stiffness_proportional, number("s", at_least(0)),
                   "0.01", "Time R: alpha = R lambda and beta = R mu, with the Lame parameters of the moment.")
+          .either("stiffness_ratio", &DampingConfig::stiffness_ratio, number("-", at_least(0)), "0.05",
+                  "The same by the share of critical damping that a vibration of 'frequency' f gets: R = "
+                  "ratio/(pi f).")
           .either("alpha", &DampingConfig::alpha, number("Pa s", at_least(0)), "100",
                   "Volumetric coefficient.")
           .either("beta", &DampingConfig::beta, number("Pa s", at_least(0)), "50", "Shear coefficient.")
+          .either("mass_proportional", &DampingConfig::mass_proportional, number("1/s", at_least(0)), "0.5",
+                  "Besides, a force -a m v on every node, also in free flight.")
+          .either(
+              "mass_ratio", &DampingConfig::mass_ratio, number("-", at_least(0)), "0.02",
+              "The same by the share of critical damping that a vibration of 'frequency' f gets: a = 4 pi f "
+              "ratio.")
+          .either("frequency", &DampingConfig::frequency, number("Hz", above(0)), "2",
+                  "Of the vibration that the ratios are meant for.")
           .then(check_damping);
   return table;
 }

@@ -7,17 +7,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace evert {
 namespace {
 
+/// Of the rate of strain. A vibration of frequency f gets the damping ratio π f τ of it.
 Damping damping_of(const std::optional<DampingConfig>& config, const MaterialConfig& material) {
-  if (!config) return {};
-  if (!config->stiffness_proportional) return {config->model, config->alpha, config->beta};
+  if (!config || config->model == DampingModel::none) return {};
+  if (!config->stiffness_proportional && !config->stiffness_ratio)
+    return {config->model, config->alpha, config->beta};
+  const double time = config->stiffness_ratio
+                          ? *config->stiffness_ratio / (std::numbers::pi * config->frequency)
+                          : *config->stiffness_proportional;
   const auto lame = lame_of(material);
-  return Damping::stiffness_proportional(config->model, *config->stiffness_proportional, lame.lambda,
-                                         lame.mu);
+  return Damping::stiffness_proportional(config->model, time, lame.lambda, lame.mu);
+}
+
+/// Of velocity [1/s]. A vibration of frequency f gets the damping ratio a/(4π f) of it.
+std::optional<double> mass_damping_of(const std::optional<DampingConfig>& config) {
+  if (!config) return {};
+  if (config->mass_ratio) return 4 * std::numbers::pi * config->frequency * *config->mass_ratio;
+  return config->mass_proportional;
 }
 
 std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config) {
@@ -155,7 +167,8 @@ ElasticProperties properties_of(const BodyConfig& body, int group) {
     material = own.material.value_or(material);
     if (own.damping) damping = own.damping;
   }
-  return {density, material_of(material), damping_of(damping, material), body.precision};
+  return {density, material_of(material), damping_of(damping, material), body.precision,
+          mass_damping_of(damping)};
 }
 
 BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {

@@ -31,9 +31,15 @@ void add_material(std::vector<Settable>& out, const Settable& place,
     add("material.youngs_modulus", EventTarget::youngs_modulus);
     add("material.poissons_ratio", EventTarget::poissons_ratio);
   }
-  if (!damping || damping->model == DampingModel::none) return;
+  if (!damping) return;
+  if (damping->mass_proportional) add("damping.mass_proportional", EventTarget::mass_proportional);
+  if (damping->mass_ratio) add("damping.mass_ratio", EventTarget::mass_ratio);
+  if (damping->frequency > 0) add("damping.frequency", EventTarget::frequency);
+  if (damping->model == DampingModel::none) return;
   if (damping->stiffness_proportional) {
     add("damping.stiffness_proportional", EventTarget::stiffness_proportional);
+  } else if (damping->stiffness_ratio) {
+    add("damping.stiffness_ratio", EventTarget::stiffness_ratio);
   } else {
     add("damping.alpha", EventTarget::alpha);
     add("damping.beta", EventTarget::beta);
@@ -87,11 +93,23 @@ void read_value(EventConfig& event, const Value& root, const Value& to) {
     case EventTarget::stiffness_proportional:
       event.value = *damping_table().read(map, parent).stiffness_proportional;
       break;
+    case EventTarget::stiffness_ratio:
+      event.value = *damping_table().read(map, parent).stiffness_ratio;
+      break;
     case EventTarget::alpha:
       event.value = damping_table().read(map, parent).alpha;
       break;
     case EventTarget::beta:
       event.value = damping_table().read(map, parent).beta;
+      break;
+    case EventTarget::mass_proportional:
+      event.value = *damping_table().read(map, parent).mass_proportional;
+      break;
+    case EventTarget::mass_ratio:
+      event.value = *damping_table().read(map, parent).mass_ratio;
+      break;
+    case EventTarget::frequency:
+      event.value = damping_table().read(map, parent).frequency;
       break;
   }
 }
@@ -144,11 +162,23 @@ void apply_event(SceneConfig& scene, const EventConfig& event) {
     case EventTarget::stiffness_proportional:
       damping->stiffness_proportional = event.value;
       break;
+    case EventTarget::stiffness_ratio:
+      damping->stiffness_ratio = event.value;
+      break;
     case EventTarget::alpha:
       damping->alpha = event.value;
       break;
     case EventTarget::beta:
       damping->beta = event.value;
+      break;
+    case EventTarget::mass_proportional:
+      damping->mass_proportional = event.value;
+      break;
+    case EventTarget::mass_ratio:
+      damping->mass_ratio = event.value;
+      break;
+    case EventTarget::frequency:
+      damping->frequency = event.value;
       break;
     case EventTarget::gravity:
     case EventTarget::friction:

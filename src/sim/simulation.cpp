@@ -42,25 +42,27 @@ void sum_over_ranks(MPI_Comm comm, std::array<double, N>& values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), N, MPI_DOUBLE, MPI_SUM, comm);
 }
 
-const std::array<std::string, 9> impulse_names{
-    "gravity_impulse_x",    "gravity_impulse_y",    "gravity_impulse_z",
-    "contact_impulse_x",    "contact_impulse_y",    "contact_impulse_z",
-    "constraint_impulse_x", "constraint_impulse_y", "constraint_impulse_z"};
+const std::array<std::string, 12> impulse_names{
+    "gravity_impulse_x",    "gravity_impulse_y", "gravity_impulse_z",    "contact_impulse_x",
+    "contact_impulse_y",    "contact_impulse_z", "constraint_impulse_x", "constraint_impulse_y",
+    "constraint_impulse_z", "damping_impulse_x", "damping_impulse_y",    "damping_impulse_z"};
 
-std::array<double, 9> as_array(const System::Impulses& impulses) {
-  std::array<double, 9> values{};
+std::array<double, 12> as_array(const System::Impulses& impulses) {
+  std::array<double, 12> values{};
   for (std::size_t k = 0; k < 3; ++k) {
     values[k] = impulses.gravity[k];
     values[3 + k] = impulses.contact[k];
     values[6 + k] = impulses.constraint[k];
+    values[9 + k] = impulses.damping[k];
   }
   return values;
 }
 
-System::Impulses as_impulses(const std::array<double, 9>& values) {
+System::Impulses as_impulses(const std::array<double, 12>& values) {
   return {{values[0], values[1], values[2]},
           {values[3], values[4], values[5]},
-          {values[6], values[7], values[8]}};
+          {values[6], values[7], values[8]},
+          {values[9], values[10], values[11]}};
 }
 
 }  // namespace
@@ -208,11 +210,12 @@ Measurements Simulation::measure() const {
   auto impulses = as_array(system_.impulses);
   sum_over_ranks(mesh_.comm, impulses);
   const auto since_restart = as_impulses(impulses);
-  Measurements all{sums[0], sums[1], sums[2], {sums[3], sums[4], sums[5]}, {sums[6], sums[7], sums[8]}, {},
-                   {},      {},      0};
+  Measurements all{
+      sums[0], sums[1], sums[2], {sums[3], sums[4], sums[5]}, {sums[6], sums[7], sums[8]}, {}, {}, {}, {}, 0};
   all.gravity_impulse = impulses_before_.gravity + since_restart.gravity;
   all.contact_impulse = impulses_before_.contact + since_restart.contact;
   all.constraint_impulse = impulses_before_.constraint + since_restart.constraint;
+  all.damping_impulse = impulses_before_.damping + since_restart.damping;
   all.inverted_points = inverted_points();
   return all;
 }
@@ -262,7 +265,7 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   };
   // All scalars are looked up before anything is changed.
   const TimeStepControl::State control{value("stable_time_step"), value("stable_time_step_age")};
-  std::array<double, 9> impulses{};
+  std::array<double, 12> impulses{};
   for (std::size_t i = 0; i < impulses.size(); ++i) impulses[i] = value(impulse_names[i]);
   const auto events_done = static_cast<std::size_t>(value("events_done"));
   steps_ = static_cast<std::int64_t>(value("steps"));

@@ -3,6 +3,7 @@
 #include "evert/mesh/distributed_mesh.hpp"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct ElasticProperties {
   Material material;
   Damping damping;
   Precision precision = Precision::full;
+  /// A force −a m v on every node, a in [1/s]; empty: none, and none later either.
+  std::optional<double> mass_proportional_damping{};
 };
 
 class ElasticForces {
@@ -36,7 +39,10 @@ class ElasticForces {
   /// `shear`. Their ghosts are scratch.
   void damping_diagonal(NodeField& normal, NodeField& shear) const;
 
-  /// True when any block of any rank is damped.
+  /// The part of C that is proportional to mass, per owned node [kg/s]; empty when no body has any.
+  [[nodiscard]] std::span<const double> mass_damping() const { return mass_damping_; }
+
+  /// True when anything of any rank is damped.
   [[nodiscard]] bool damped() const { return damped_; }
 
   // Sums over this rank's cells, at positions whose ghosts are up to date:
@@ -60,11 +66,16 @@ class ElasticForces {
   [[nodiscard]] std::size_t memory() const;
 
  private:
+  /// Collective. What the cells contribute to the owned nodes, each with the density of its region.
+  [[nodiscard]] std::vector<double> lumped(std::span<const double> densities);
+
   const DistributedMesh& mesh_;
   Halo halo_;
   std::vector<std::unique_ptr<ElasticBlock>>
       blocks_;  // parallel to mesh_.cells; null where a rank has no cells
   std::vector<double> masses_;
+  std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
+  std::vector<double> mass_damping_;
   mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
   bool damped_ = false;
 };

@@ -40,6 +40,7 @@ class Newmark {
   int correct(System& system, double dt, bool colliding);
   int rub(System& system);
   void remember_change(System& system, std::span<const double> after, std::span<const double> before) const;
+  static void account_for_mass_damping(System& system, double dt);
   void follow_forces(const System& system);
 
   DampingSolver solver_;

@@ -28,6 +28,7 @@ struct System {
   /// Impulses received since the start, this rank's share [N s].
   struct Impulses {
     Vec3d gravity{}, contact{}, constraint{};
+    Vec3d damping{};  ///< of the damping proportional to mass; the other has no resultant
   } impulses;
 
   System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,

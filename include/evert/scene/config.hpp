@@ -152,12 +152,18 @@ struct ActivationKey {
 /// Linear in between, constant outside; times strictly increasing; never empty.
 using ActivationConfig = std::vector<ActivationKey>;
 
-/// Exactly one of stiffness_proportional and (alpha, beta) is given.
+/// Of the rate of strain unless the model is none, by exactly one of stiffness_proportional, stiffness_ratio
+/// and (alpha, beta); and of velocity, by at most one of mass_proportional and mass_ratio. A ratio is of the
+/// critical damping of a vibration of `frequency`.
 struct DampingConfig {
-  DampingModel model = DampingModel::rotated;  ///< never none: then the whole optional is empty
+  DampingModel model = DampingModel::rotated;  ///< none only beside damping of velocity, or in a group
   std::optional<double> stiffness_proportional;  ///< [s] ≥ 0: α = τλ, β = τμ with the λ, μ of the moment
+  std::optional<double> stiffness_ratio;         ///< [-] ≥ 0
   double alpha = 0;                              ///< [Pa s] ≥ 0
   double beta = 0;                               ///< [Pa s] ≥ 0
+  std::optional<double> mass_proportional;       ///< [1/s] ≥ 0
+  std::optional<double> mass_ratio;              ///< [-] ≥ 0
+  double frequency = 0;                          ///< [Hz] > 0 where a ratio is given
 };
 
 /// What differs in one named volume group of the mesh; empty members: as in the body.
@@ -246,8 +252,12 @@ enum class EventTarget {
   youngs_modulus,
   poissons_ratio,
   stiffness_proportional,
+  stiffness_ratio,
   alpha,
   beta,
+  mass_proportional,
+  mass_ratio,
+  frequency,
   gravity,
   friction
 };

@@ -23,6 +23,7 @@ struct Measurements {
   Vec3d gravity_impulse{};     ///< accumulated since the start [N s]
   Vec3d contact_impulse{};     ///< from obstacles, normal and friction, accumulated since the start [N s]
   Vec3d constraint_impulse{};  ///< from fixed and scripted nodes, accumulated since the start [N s]
+  Vec3d damping_impulse{};     ///< of mass-proportional damping, accumulated since the start [N s]
   GlobalIndex inverted_points = 0;  ///< quadrature points with det F < 0; a tet4 has one
 };
 

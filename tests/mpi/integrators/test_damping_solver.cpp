@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <string>
 
@@ -133,6 +134,65 @@ INSTANTIATE_TEST_SUITE_P(
                     Choice{"baij", "pbjacobi"}, Choice{"baij", "bjacobi"}, Choice{"aij", "gamg"},
                     Choice{"sbaij", "jacobi"}, Choice{"sbaij", "bjacobi"}, Choice{"aij", "bjacobi"}),
     [](const auto& choice) { return std::string(choice.param.mat_type) + "_" + choice.param.pc_type; });
+
+/// The same with damping proportional to mass besides.
+class DraggedBox : public DampedBox {
+ protected:
+  DraggedBox() {
+    properties_.front().mass_proportional_damping = 40;
+    both_ = std::make_unique<ElasticForces>(mesh_, properties_);
+    both_->update(x_, f_);
+  }
+  std::unique_ptr<ElasticForces> both_;
+};
+
+TEST_F(DraggedBox, DampsEveryVelocityInProportionToItsMass) {
+  NodeField viscous(mesh_), all(mesh_);
+  elastic_.add_damping(v_, viscous, 0.5);
+  both_->add_damping(v_, all, 0.5);
+  for (std::size_t i = 0; i < all.owned().size(); ++i) {
+    const double expected = viscous.owned()[i] + 0.5 * 40 * elastic_.masses()[i / 3] * v_.owned()[i];
+    EXPECT_NEAR(all.owned()[i], expected, 1e-14 * (1 + std::abs(expected))) << i;
+  }
+}
+
+TEST_F(DraggedBox, ShellAndMatrixAreOneOperator) {
+  DampingOperator shell(mesh_, *both_);
+  const auto held = constraints();
+  shell.set(0.01, held);
+  for (const char* type : {MATAIJ, MATBAIJ, MATSBAIJ}) {
+    AssembledDamping assembled(shell, type);
+    assembled.assemble();
+    VecHandle expected, found;
+    check(VecDuplicate(right_.get(), expected.out()));
+    check(VecDuplicate(right_.get(), found.out()));
+    PetscReal scale = 0, error = 0;
+    check(MatMult(shell.mat(), right_.get(), expected.get()));
+    check(MatMult(assembled.mat(), right_.get(), found.get()));
+    check(VecNorm(expected.get(), NORM_INFINITY, &scale));
+    check(VecAXPY(found.get(), -1.0, expected.get()));
+    check(VecNorm(found.get(), NORM_INFINITY, &error));
+    EXPECT_LE(error, 1e-13 * scale) << type;
+    check(MatGetDiagonal(shell.mat(), expected.get()));
+    check(MatGetDiagonal(assembled.mat(), found.get()));
+    check(VecAXPY(found.get(), -1.0, expected.get()));
+    check(VecNorm(found.get(), NORM_INFINITY, &error));
+    EXPECT_LE(error, 1e-13 * scale) << type;
+  }
+}
+
+TEST_F(DraggedBox, AloneItIsOneIterationAndFollowsAnEvent) {
+  properties_.front().damping = {};
+  ElasticForces dragged(mesh_, properties_);
+  dragged.update(x_, f_);
+  ASSERT_TRUE(dragged.damped());
+  DampingSolver solver(mesh_, dragged);
+  EXPECT_EQ(solver.solve(0.01, right_.get(), v_, {}), 1);  // its diagonal is all of it
+  EXPECT_LE(residual_norm(solver, 0.01, {}), 1e-12);
+  properties_.front().mass_proportional_damping = 0;
+  dragged.set_properties(0, properties_.front());
+  for (const double damping : dragged.mass_damping()) EXPECT_EQ(damping, 0);
+}
 
 TEST_F(DampedBox, DiagonalOfTheShellIsThatOfTheMatrix) {
   DampingOperator shell(mesh_, elastic_);

@@ -21,6 +21,7 @@ Measurements some_measurements() {
   m.gravity_impulse = {7, 8, 9};
   m.contact_impulse = {10, 11, 12};
   m.constraint_impulse = {13, 14, 15};
+  m.damping_impulse = {16, 17, 18};
   m.inverted_points = 99;
   return m;
 }
@@ -51,7 +52,7 @@ TEST(EnergyLog, ARowHasAValueForEachColumnAndIsThereAtOnce) {
   log.write(7, 0.3, some_measurements());
   const auto lines = lines_of(scratch / "energy.csv");
   ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[1], "0.3,7,0.1,2,-1e-300,2.1,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,99");
+  EXPECT_EQ(lines[1], "0.3,7,0.1,2,-1e-300,2.1,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,99");
   EXPECT_EQ(std::count(lines[0].begin(), lines[0].end(), ','),
             std::count(lines[1].begin(), lines[1].end(), ','));
 }

@@ -53,6 +53,25 @@ TEST(Events, find_every_target) {
   EXPECT_EQ(after.obstacles[0].friction, 0.4);
 }
 
+TEST(Events, change_damping_by_ratios_and_of_velocity) {
+  const auto text = changed(changed(full_scene, "{model: rotated, stiffness_proportional: 1.0e-3}",
+                                    "{model: blended, stiffness_ratio: 0.1, mass_ratio: 0.2, frequency: 3}"),
+                            "{model: none}", "{model: none, mass_proportional: 4}");
+  const auto scene =
+      parse_scene(changed(text, present_event,
+                          "  - {at: 0, set: bodies.torus.damping.stiffness_ratio, to: 0.5}\n"
+                          "  - {at: 0, set: bodies.torus.damping.mass_ratio, to: 0.6}\n"
+                          "  - {at: 0, set: bodies.torus.damping.frequency, to: 7}\n"
+                          "  - {at: 0, set: bodies.torus.groups.tendon.damping.mass_proportional, to: 8}\n"),
+                  "scene.yaml");
+  auto after = scene;
+  for (const auto& event : scene.events) apply_event(after, event);
+  EXPECT_EQ(after.bodies[0].damping->stiffness_ratio, 0.5);
+  EXPECT_EQ(after.bodies[0].damping->mass_ratio, 0.6);
+  EXPECT_EQ(after.bodies[0].damping->frequency, 7);
+  EXPECT_EQ(after.bodies[0].groups[0].damping->mass_proportional, 8);
+}
+
 TEST(Events, stand_in_order_of_time) {
   const auto scene = with_events(
       "  - {at: 2, set: obstacles.ball.friction, to: 1}\n"

@@ -165,11 +165,25 @@ const std::vector<Mistake> mistakes{
      "scene.yaml:11: bodies.torus.mesh.edge_length: '1e-6' is too short for this size: it makes more than "
      "1e9 cells"},
     {"damping_in_two_ways", "stiffness_proportional: 1.0e-3", "stiffness_proportional: 1.0e-3, beta: 1",
-     "scene.yaml:23: bodies.torus.damping: needs either 'stiffness_proportional' [s] or 'alpha' and 'beta' "
-     "[Pa s]"},
+     "scene.yaml:23: bodies.torus.damping: needs one of 'stiffness_proportional' [s], 'stiffness_ratio' "
+     "at a 'frequency' [Hz], and 'alpha' and 'beta' [Pa s]"},
     {"damping_of_nothing", ", stiffness_proportional: 1.0e-3", "",
-     "scene.yaml:23: bodies.torus.damping: needs either 'stiffness_proportional' [s] or 'alpha' and 'beta' "
-     "[Pa s]"},
+     "scene.yaml:23: bodies.torus.damping: needs one of 'stiffness_proportional' [s], 'stiffness_ratio' "
+     "at a 'frequency' [Hz], and 'alpha' and 'beta' [Pa s]"},
+    {"damping_by_ratio_and_time", "stiffness_proportional: 1.0e-3",
+     "stiffness_proportional: 1.0e-3, stiffness_ratio: 0.1, frequency: 2",
+     "scene.yaml:23: bodies.torus.damping: needs one of 'stiffness_proportional' [s], 'stiffness_ratio' "
+     "at a 'frequency' [Hz], and 'alpha' and 'beta' [Pa s]"},
+    {"ratio_without_frequency", "stiffness_proportional: 1.0e-3", "stiffness_ratio: 0.1",
+     "scene.yaml:23: bodies.torus.damping: needs the 'frequency' [Hz] that its damping ratio is meant at"},
+    {"frequency_without_ratio", "stiffness_proportional: 1.0e-3",
+     "stiffness_proportional: 1.0e-3, frequency: 2",
+     "scene.yaml:23: bodies.torus.damping.frequency: goes with 'stiffness_ratio' or 'mass_ratio', and none "
+     "is "
+     "there"},
+    {"mass_damping_in_two_ways", "stiffness_proportional: 1.0e-3",
+     "stiffness_proportional: 1.0e-3, mass_proportional: 1, mass_ratio: 0.1, frequency: 2",
+     "scene.yaml:23: bodies.torus.damping: may have 'mass_proportional' [1/s] or 'mass_ratio', not both"},
     {"limit_without_extension", "model: neo_hookean", "model: rotated_linear",
      "scene.yaml:21: bodies.torus.material.compression_limit: does not go with 'model: rotated_linear', only "
      "with neo_hookean, st_venant_kirchhoff, mooney_rivlin, spline, muscle or tendon"},

@@ -1,13 +1,16 @@
 #include "evert/scene/build.hpp"
+#include "evert/scene/material.hpp"
 
 #include <gtest/gtest.h>
 
 #include "scenes.hpp"
 #include <cmath>
+#include <numbers>
 
 namespace evert {
 namespace {
 
+using testing::changed;
 using testing::full_scene;
 using testing::least_scene;
 
@@ -56,6 +59,25 @@ TEST(Load, reads_bodies_in_order) {
   EXPECT_EQ(torus.start->axis, (Vec3d{{1, 0, 0}}));
   EXPECT_EQ(torus.start->seed, 7U);
   EXPECT_EQ(scene.bodies[1].name, "box");
+}
+
+TEST(Load, turns_damping_ratios_into_coefficients) {
+  const auto properties = [](const std::string& damping) {
+    const auto text = changed(full_scene, "{model: rotated, stiffness_proportional: 1.0e-3}", damping);
+    return properties_of(parse_scene(text, "scene.yaml").bodies[0], -1);
+  };
+  // ξ = ω τ/2 + a/2ω with ω = 2π f
+  const double pi = std::numbers::pi;
+  const auto mixed = properties("{model: blended, stiffness_ratio: 0.06, mass_ratio: 0.04, frequency: 5}");
+  EXPECT_EQ(mixed.damping.model, DampingModel::blended);
+  const double time =
+      mixed.damping.beta / lame_of(parse_scene(full_scene, "scene.yaml").bodies[0].material).mu;
+  EXPECT_NEAR(2 * pi * 5 * time / 2, 0.06, 1e-15);
+  EXPECT_NEAR(mixed.mass_proportional_damping.value() / (2 * 2 * pi * 5), 0.04, 1e-15);
+  EXPECT_FALSE(properties("{model: blended, stiffness_proportional: 1}").mass_proportional_damping);
+  const auto by_mass = properties("{model: none, mass_proportional: 3}");
+  EXPECT_EQ(by_mass.damping.model, DampingModel::none);
+  EXPECT_EQ(by_mass.mass_proportional_damping, 3);
 }
 
 TEST(Load, reads_materials_and_damping) {
