@@ -36,8 +36,12 @@ Mesh make_box(const CommandOptions& options) {
   if (options.has("cells") == options.has("edge_length"))
     throw UserError("evert mesh generate box needs either -edge_length or -cells");
   const auto size = options.three_numbers("size");
-  return options.has("cells") ? generate_box(size, options.three_whole_numbers("cells"), cells)
-                              : generate_box(size, options.number("edge_length"), cells);
+  if (options.has("edge_length")) {
+    if (options.has("hole")) throw UserError("evert mesh generate box: -hole needs -cells");
+    return generate_box(size, options.number("edge_length"), cells);
+  }
+  const auto hole = options.has("hole") ? options.two_whole_numbers("hole") : std::array<int, 2>{};
+  return generate_box(size, options.three_whole_numbers("cells"), cells, hole);
 }
 
 /// A shape filled by stuffing: all take -edge_length.
@@ -51,7 +55,7 @@ Shape implicit(std::string name, std::vector<std::string> options,
 
 const std::vector<Shape>& shapes() {
   static const std::vector<Shape> table{
-      {"box", {"size", "edge_length", "cells", "cell"}, make_box},
+      {"box", {"size", "edge_length", "cells", "hole", "cell"}, make_box},
       implicit("ball", {"radius"}, [](const CommandOptions& o) { return ball(o.number("radius")); }),
       implicit(
           "torus", {"major_radius", "minor_radius"},

@@ -1,5 +1,6 @@
 #include "evert/mesh/boundary.hpp"
 #include "evert/mesh/generators.hpp"
+#include "evert/mesh/repair.hpp"
 
 #include "mesh_size.hpp"
 #include "positive.hpp"
@@ -17,9 +18,21 @@ using Corners = std::array<GlobalIndex, 8>;  ///< of a cube, in VTK's order
 /// Node numbers of a grid of cubes: its corners and, behind them, the middles of the cubes.
 class Grid {
  public:
-  Grid(const Vec3d& size, const std::array<int, 3>& divisions) : size_(size), n_(divisions) {}
+  Grid(const Vec3d& size, const std::array<int, 3>& divisions, const std::array<int, 2>& hole)
+      : size_(size), n_(divisions), hole_(hole) {}
 
   [[nodiscard]] int divisions(std::size_t axis) const { return n_[axis]; }
+  /// False outside the box and in its hole.
+  [[nodiscard]] bool has_cube(int i, int j, int k) const {
+    const std::array cube{i, j, k};
+    bool in_box = true, in_hole = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) in_box = in_box && cube[axis] >= 0 && cube[axis] < n_[axis];
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const int first = (n_[axis] - hole_[axis]) / 2;
+      in_hole = in_hole && cube[axis] >= first && cube[axis] < first + hole_[axis];
+    }
+    return in_box && !in_hole;
+  }
   [[nodiscard]] GlobalIndex corner(int i, int j, int k) const {
     return (GlobalIndex{k} * (n_[1] + 1) + j) * (n_[0] + 1) + i;
   }
@@ -44,6 +57,7 @@ class Grid {
 
   Vec3d size_;
   std::array<int, 3> n_;
+  std::array<int, 2> hole_;
 };
 
 template <class Visit>
@@ -91,7 +105,7 @@ constexpr std::array cube_faces{
 };
 
 /// The tetrahedra of the lattice around the middle of one cube: four over each face shared with a cube of
-/// higher number, two (half an octahedron) on the faces of the box.
+/// higher number, two (half an octahedron) on the surface.
 void add_bcc_cells(CellBlock& block, const Grid& grid, int i, int j, int k) {
   const auto corners = grid.corners(i, j, k);
   const auto middle = grid.middle(i, j, k);
@@ -99,9 +113,7 @@ void add_bcc_cells(CellBlock& block, const Grid& grid, int i, int j, int k) {
     std::array<GlobalIndex, 4> f{};
     for (std::size_t c = 0; c < 4; ++c) f[c] = corners[static_cast<std::size_t>(face.corners[c])];
     const std::array<int, 3> next{i + face.step[0], j + face.step[1], k + face.step[2]};
-    const bool inside = next[0] >= 0 && next[1] >= 0 && next[2] >= 0 && next[0] < grid.divisions(0) &&
-                        next[1] < grid.divisions(1) && next[2] < grid.divisions(2);
-    if (!inside) {
+    if (!grid.has_cube(next[0], next[1], next[2])) {
       block.nodes.insert(block.nodes.end(), {f[0], f[2], f[1], middle, f[0], f[3], f[2], middle});
       continue;
     }
@@ -131,6 +143,18 @@ void add_face_sets(Mesh& mesh, const Grid& grid) {
         }
     mesh.node_sets.push_back(std::move(low));
     mesh.node_sets.push_back(std::move(high));
+  }
+}
+
+void require_hole_in_the_middle(const std::array<int, 3>& divisions, const std::array<int, 2>& hole) {
+  if (hole == std::array<int, 2>{}) return;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto numbers = "hole is " + std::to_string(hole[axis]) + " of " + std::to_string(divisions[axis]) +
+                         " cubes along " + std::string(1, "xy"[axis]);
+    if (hole[axis] < 1 || hole[axis] >= divisions[axis])
+      throw UserError(numbers + ", but must be at least 1 and less than all");
+    if ((divisions[axis] - hole[axis]) % 2 != 0)
+      throw UserError(numbers + ": to be in the middle, both must be odd or both even");
   }
 }
 
@@ -169,7 +193,8 @@ Mesh generate_box(const Vec3d& size, double edge_length, BoxCells cells) {
   return generate_box(size, divisions, cells);
 }
 
-Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells) {
+Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells,
+                  const std::array<int, 2>& hole) {
   for (const double side : size.components) require_positive(side, "size");
   double cubes = 1;
   for (const int n : divisions) {
@@ -179,7 +204,8 @@ Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCel
   }
   require_possible_size(cubes * cells_per_cube(cells), cubes);
 
-  const Grid grid(size, divisions);
+  require_hole_in_the_middle(divisions, hole);
+  const Grid grid(size, divisions, hole);
   Mesh mesh;
   for (int k = 0; k <= divisions[2]; ++k)
     for (int j = 0; j <= divisions[1]; ++j)
@@ -187,8 +213,9 @@ Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCel
   CellBlock block;
   block.type = cell_type(cells);
   for_each_cube(grid, [&](int i, int j, int k) {
+    if (cells == BoxCells::bcc) mesh.nodes.push_back(grid.position(i + 0.5, j + 0.5, k + 0.5));
+    if (!grid.has_cube(i, j, k)) return;
     if (cells == BoxCells::bcc) {
-      mesh.nodes.push_back(grid.position(i + 0.5, j + 0.5, k + 0.5));
       add_bcc_cells(block, grid, i, j, k);
     } else {
       add_cube(block, cells, grid.corners(i, j, k), (i + j + k) % 2 != 0);
@@ -199,6 +226,7 @@ Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCel
   mesh.regions = {"body"};
   mesh.node_sets.push_back({"surface", boundary_nodes(mesh)});
   add_face_sets(mesh, grid);
+  drop_unused_nodes(mesh);  // those in the hole
   return mesh;
 }
 

@@ -31,6 +31,10 @@ void add_material(std::vector<Settable>& out, const Settable& place,
     add("material.youngs_modulus", EventTarget::youngs_modulus);
     add("material.poissons_ratio", EventTarget::poissons_ratio);
   }
+  if (material != nullptr && material->mu) {
+    add("material.lambda", EventTarget::lambda);
+    add("material.mu", EventTarget::mu);
+  }
   if (!damping) return;
   if (damping->mass_proportional) add("damping.mass_proportional", EventTarget::mass_proportional);
   if (damping->mass_ratio) add("damping.mass_ratio", EventTarget::mass_ratio);
@@ -89,6 +93,12 @@ void read_value(EventConfig& event, const Value& root, const Value& to) {
       break;
     case EventTarget::poissons_ratio:
       event.value = *material_table().read(map, parent).poissons_ratio;
+      break;
+    case EventTarget::lambda:
+      event.value = *material_table().read(map, parent).lambda;
+      break;
+    case EventTarget::mu:
+      event.value = *material_table().read(map, parent).mu;
       break;
     case EventTarget::stiffness_proportional:
       event.value = *damping_table().read(map, parent).stiffness_proportional;
@@ -158,6 +168,12 @@ void apply_event(SceneConfig& scene, const EventConfig& event) {
       break;
     case EventTarget::poissons_ratio:
       material.poissons_ratio = event.value;
+      break;
+    case EventTarget::lambda:
+      material.lambda = event.value;
+      break;
+    case EventTarget::mu:
+      material.mu = event.value;
       break;
     case EventTarget::stiffness_proportional:
       damping->stiffness_proportional = event.value;

@@ -34,6 +34,19 @@ const Table<FileMesh>& file_mesh() {
   return table;
 }
 
+void check_hole(const BoxMesh& box, const Value& map, const std::string& path) {
+  const auto* hole = map.find("hole");
+  if (hole == nullptr) return;
+  if (map.find("cells") == nullptr)
+    fail(*hole, join(path, "hole"), "needs 'cells', of which it leaves some out");
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (box.hole[axis] >= box.cells[axis] || (box.cells[axis] - box.hole[axis]) % 2 != 0)
+      fail(*hole, join(path, "hole"),
+           "must be in the middle: along x and y less than 'cells' by an even number, but is " +
+               std::to_string(box.hole[axis]) + " of " + std::to_string(box.cells[axis]) + " along " +
+               std::string(1, "xy"[axis]));
+}
+
 void finish_box(BoxMesh& box, const Value& map, const std::string& path) {
   const bool by_size = map.find("size") != nullptr;
   const bool by_corners = map.find("min") != nullptr && map.find("max") != nullptr;
@@ -53,6 +66,7 @@ void finish_box(BoxMesh& box, const Value& map, const std::string& path) {
     expect_possible(box.size[0] * box.size[1] * box.size[2], box.edge_length, map, path);
   else if (static_cast<double>(box.cells[0]) * box.cells[1] * box.cells[2] > most_cells)
     fail(*map.find("cells"), join(path, "cells"), "are too many: at most 1e9 in all");
+  check_hole(box, map, path);
 }
 
 const Table<BoxMesh>& box_mesh() {
@@ -67,6 +81,8 @@ const Table<BoxMesh>& box_mesh() {
                   "[20, 10, 10]", "Cubes along x, y and z, each cut into cells; instead of edge_length.")
           .either("edge_length", &BoxMesh::edge_length, length(), "0.05",
                   "Edge of the cubes, about; instead of cells.")
+          .either("hole", &BoxMesh::hole, array_of<2>(integer(1, 1'000'000), "whole numbers"), "[6, 4]",
+                  "Cubes along x and y that are left out in the middle, all the way along z: a square ring.")
           .optional("cell", &BoxMesh::cell,
                     one_of<BoxCells>({{"bcc", BoxCells::bcc, "tetrahedra of the body-centred cubic lattice"},
                                       {"tet6", BoxCells::tet6, "6 tetrahedra a cube"},

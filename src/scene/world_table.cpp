@@ -163,10 +163,10 @@ const Table<EventConfig>& event_table() {
   static const auto table =
       Table<EventConfig>("A value that changes at a time.")
           .required("at", &EventConfig::at, number("s", at_least(0)), "0.5", "When.")
-          .required(
-              "set", &EventConfig::set, text("path"), "bodies.torus.material.youngs_modulus",
-              "What: youngs_modulus or poissons_ratio of a material, a number of a damping that it has, "
-              "friction of an obstacle, or gravity.")
+          .required("set", &EventConfig::set, text("path"), "bodies.torus.material.youngs_modulus",
+                    "What: youngs_modulus, poissons_ratio, lambda or mu of a material that has them, a "
+                    "number of a damping that it has, "
+                    "friction of an obstacle, or gravity.")
           .required(
               "to", [](EventConfig&) -> auto& { return std::ignore; }, any, "2e5", "The new value.");
   return table;

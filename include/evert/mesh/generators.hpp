@@ -21,8 +21,11 @@ enum class BoxCells {
 /// faces "x_min", "x_max", "y_min", ... "z_max". Throws UserError when a length is not positive and finite,
 /// or when there would be more than 2^31 cells.
 [[nodiscard]] Mesh generate_box(const Vec3d& size, double edge_length, BoxCells cells = BoxCells::bcc);
-/// The same with the number of cubes along each axis.
-[[nodiscard]] Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells);
+/// The same with the number of cubes along each axis, and without the `hole[0]` × `hole[1]` columns of cubes
+/// along z in the middle of it. Throws UserError when a hole is not smaller than the box, or cannot be in the
+/// middle since it is odd and the box even, or the reverse.
+[[nodiscard]] Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells,
+                                const std::array<int, 2>& hole = {});
 
 /// Fills any shape with tetrahedra by isosurface stuffing (Labelle and Shewchuk 2007, uniform): a
 /// body-centred cubic lattice whose nodes near the surface are moved onto it and whose tetrahedra are cut

@@ -34,6 +34,7 @@ struct BoxMesh {
   Vec3d max{};   ///< [m]
   BoxCells cell = BoxCells::bcc;
   std::array<int, 3> cells{};  ///< along x, y, z; all 0 when edge_length is given
+  std::array<int, 2> hole{};   ///< cubes left out in the middle along x, y; 0 without a hole
   double edge_length = 0;      ///< [m]; 0 when cells are given
 };
 
@@ -251,6 +252,8 @@ struct ConstraintConfig {
 enum class EventTarget {
   youngs_modulus,
   poissons_ratio,
+  lambda,
+  mu,
   stiffness_proportional,
   stiffness_ratio,
   alpha,

@@ -48,6 +48,24 @@ TEST(Box, fills_its_volume_with_every_kind_of_cell) {
   }
 }
 
+TEST(Box, has_a_hole_through_its_middle) {
+  for (const auto cells : {BoxCells::hex8, BoxCells::wedge6, BoxCells::tet5, BoxCells::tet6, BoxCells::bcc}) {
+    const auto mesh = generate_box({5, 6, 2}, {5, 6, 2}, cells, {3, 2});
+    EXPECT_NO_THROW(require_positive_volumes(mesh, "ring"));
+    const auto quality = measure_quality(mesh);
+    EXPECT_NEAR(quality.total_volume, 2 * (5 * 6 - 3 * 2), 1e-12);
+    EXPECT_EQ(quality.components, 1);
+    EXPECT_EQ(quality.unused_nodes, 0);
+    GlobalIndex squares = 0;
+    for (const auto& face : boundary_faces(mesh)) squares += face.corners == 4 ? 2 : 1;
+    // Above and below, around, and in the hole.
+    EXPECT_EQ(squares, 2 * (2 * (5 * 6 - 3 * 2) + 2 * 2 * (5 + 6) + 2 * 2 * (3 + 2)));
+    for (const auto& p : mesh.nodes)
+      EXPECT_FALSE(std::abs(p[0]) < 1.5 && std::abs(p[1]) < 1) << "in the hole";
+    EXPECT_EQ(node_set(mesh, "z_max").nodes.size(), 6U * 7U - 2U * 1U);
+  }
+}
+
 TEST(Box, names_its_sides) {
   const auto mesh = generate_box({1, 2, 3}, {3, 4, 5}, BoxCells::bcc);
   EXPECT_EQ(node_set(mesh, "x_min").nodes.size(), 5U * 6U);
@@ -200,6 +218,8 @@ TEST(Generators, refuse_impossible_sizes) {
   expect([&] { return generate_box({1, 0, 1}, 0.5, BoxCells::hex8); }, "size is 0");
   expect([&] { return generate_box({1, 1, 1}, 1e-6, BoxCells::hex8); }, "choose a larger edge_length");
   expect([&] { return generate_box({1, 1, 1}, {2, 0, 2}, BoxCells::hex8); }, "must be at least 1");
+  expect([&] { return generate_box({1, 1, 1}, {4, 4, 1}, BoxCells::hex8, {4, 2}); }, "less than all");
+  expect([&] { return generate_box({1, 1, 1}, {4, 4, 1}, BoxCells::hex8, {2, 1}); }, "both must be odd");
   expect([&] { return generate_box({1, 1, 1}, {100000, 100000, 100000}, BoxCells::hex8); }, "2^31 cells");
   const Vec3d low{-1, -1, -1};
   const Vec3d high{1, 1, 1};

@@ -38,6 +38,7 @@ TEST_F(MeshCommand, generates_every_shape_with_its_histogram) {
        {"generate box -size 1,0.5,0.5 -edge_length 0.25 -cell tet6 -o @box.msh",
         "generate box -size 1,0.5,0.5 -cells 2,1,1 -cell hex8 -o @box.vtu",
         "generate box -size 1,1,1 --cells 2,2,2 -o @bcc.mesh",
+        "generate box -size 3,3,1 -cells 3,3,1 -hole 1,1 -cell hex8 -o @ring.vtu",
         "generate ball -radius 1 -edge_length 0.5 -o @ball.vtk",
         "generate torus -major_radius 0.5 -minor_radius 0.2 -edge_length 0.1 -o @torus.msh",
         "generate cylinder -radius 0.2 -length 1 -edge_length 0.1 -o @cylinder.msh",
@@ -110,6 +111,7 @@ TEST_F(MeshCommand, refuses_wrong_usage) {
   expect_refused(box + "-cell hex9", {"there is no cell 'hex9'", "did you mean 'hex8'?"});
   expect_refused("generate box -size 1,1 -edge_length 0.5 -o @b.msh",
                  {"three finite numbers like 1,0.5,2, not '1,1'"});
+  expect_refused("generate box -size 1,1,1 -edge_length 0.5 -hole 1,1 -o @b.msh", {"-hole needs -cells"});
   expect_refused("generate box -size 1,1,1 -cells 2,2,2.5 -o @b.msh", {"three whole numbers like 10,5,5"});
   expect_refused(box + "extra", {"'extra' is one argument too many"});
   expect_refused("convert", {"needs a mesh to read"});

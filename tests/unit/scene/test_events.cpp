@@ -72,6 +72,18 @@ TEST(Events, change_damping_by_ratios_and_of_velocity) {
   EXPECT_EQ(after.bodies[0].groups[0].damping->mass_proportional, 8);
 }
 
+TEST(Events, change_the_moduli_that_a_material_is_given_by) {
+  const auto text = changed(full_scene, "youngs_modulus: 0, poissons_ratio: 0", "lambda: 1, mu: 2");
+  const auto scene = parse_scene(changed(text, present_event,
+                                         "  - {at: 0, set: bodies.box.material.lambda, to: 3}\n"
+                                         "  - {at: 0, set: bodies.box.material.mu, to: 4}\n"),
+                                 "scene.yaml");
+  auto after = scene;
+  for (const auto& event : scene.events) apply_event(after, event);
+  EXPECT_EQ(after.bodies[1].material.lambda, 3);
+  EXPECT_EQ(after.bodies[1].material.mu, 4);
+}
+
 TEST(Events, stand_in_order_of_time) {
   const auto scene = with_events(
       "  - {at: 2, set: obstacles.ball.friction, to: 1}\n"
