@@ -3,6 +3,7 @@
 #include "evert/app/command_line.hpp"
 #include "evert/app/observer.hpp"
 #include "evert/app/run_loop.hpp"
+#include "evert/bench/elements.hpp"
 #include "evert/bench/kernel_report.hpp"
 #include "evert/bench/step_profile.hpp"
 #include "evert/core/collective.hpp"
@@ -31,44 +32,80 @@ evert bench kernels [options]     rates of the element kernels: tetrahedra, poin
   -bench_seconds T                processor time for each kernel and size; 2 unless given
   -bench_json FILE                the figures, for programs
 
+evert bench elements [options]    a bending beam filled with hex8, 5, 6 or bcc tetrahedra a cube, wedge6 and
+                                  tet10: nodes, quadrature points, cost of the forces, stable time step and
+                                  error, and what a Poisson's ratio near 0.5 does to each
+  -bench_size S                   small or full, how fine the meshes are; full unless given
+  -bench_seconds T                processor time for each mesh; 0.5 unless given
+  -bench_json FILE                the figures, for programs
+  -bench_svg FILE                 error against cost, as a picture
+
 evert bench step scene.yaml [options]     what the time of the steps of a scene goes into, without output;
                                   options are those of evert run
 
 The environment variable EVERT_CPU_LEVEL (v2, v3, v4) chooses narrower kernels than this processor could run.
 )";
 
-std::vector<bench::KernelSize> sizes_from(const std::string& list) {
-  const auto all = bench::kernel_sizes();
+/// The size of that name, for a command.
+template <class Size>
+const Size& size_of_name(std::span<const Size> all, const std::string& name, const std::string& command) {
   std::vector<std::string> names;
   for (const auto& size : all) names.push_back(size.name);
+  const auto found = std::ranges::find(all, name, &Size::name);
+  if (found == all.end())
+    throw UserError("evert bench " + command + ": -bench_size is '" + name + "': must be " + list_of(names) +
+                    did_you_mean(name, names));
+  return *found;
+}
+
+std::vector<bench::KernelSize> sizes_from(const std::string& list) {
   std::vector<bench::KernelSize> sizes;
   for (std::size_t begin = 0; begin <= list.size();) {
     const auto end = std::min(list.find(',', begin), list.size());
-    const auto name = list.substr(begin, end - begin);
-    const auto found = std::ranges::find(all, name, &bench::KernelSize::name);
-    if (found == all.end())
-      throw UserError("evert bench kernels: -bench_size is '" + name + "': must be " + list_of(names) +
-                      did_you_mean(name, names));
-    sizes.push_back(*found);
+    sizes.push_back(size_of_name(bench::kernel_sizes(), list.substr(begin, end - begin), "kernels"));
     begin = end + 1;
   }
   return sizes;
 }
 
-double seconds_from(const CommandOptions& options) {
+double seconds_from(const CommandOptions& options, const std::string& command, double otherwise) {
+  if (!options.has("bench_seconds")) return otherwise;
   constexpr double longest = 3600;
   const double seconds = options.number("bench_seconds");
   if (!(seconds > 0 && seconds <= longest))
-    throw UserError("evert bench kernels: -bench_seconds must be above 0 and at most 3600, not " +
+    throw UserError("evert bench " + command + ": -bench_seconds must be above 0 and at most 3600, not " +
                     options.text("bench_seconds"));
   return seconds;
+}
+
+int elements_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
+  const CommandOptions options("evert bench elements", arguments,
+                               {"bench_size", "bench_seconds", "bench_json", "bench_svg"}, {}, {});
+  const auto& size = size_of_name(
+      bench::element_sizes(), options.has("bench_size") ? options.text("bench_size") : "full", "elements");
+  const double seconds = seconds_from(options, "elements", 0.5);
+  const auto json = options.has("bench_json") ? options.text("bench_json") : "";
+  const auto svg = options.has("bench_svg") ? options.text("bench_svg") : "";
+  on_root(comm, [&] {
+    for (const auto& file : {json, svg})
+      if (!file.empty()) require_writable(file);
+  });
+  const auto report = bench::measure_elements(comm, size, seconds);
+  on_root(comm, [&] {
+    print_table(report, out);
+    if (!json.empty()) write_file(json, bench::json_text(report));
+    if (!svg.empty()) write_file(svg, bench::svg_text(report));
+    for (const auto& file : {json, svg})
+      if (!file.empty()) out << "\nwrote " << file << '\n';
+  });
+  return 0;
 }
 
 int kernels_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
   const CommandOptions options("evert bench kernels", arguments,
                                {"bench_size", "bench_seconds", "bench_json"}, {}, {});
   const auto sizes = sizes_from(options.has("bench_size") ? options.text("bench_size") : "100K,1M");
-  const double seconds = options.has("bench_seconds") ? seconds_from(options) : 2.0;
+  const double seconds = seconds_from(options, "kernels", 2.0);
   const auto json = options.has("bench_json") ? options.text("bench_json") : "";
   on_root(comm, [&] {
     if (!json.empty()) require_writable(json);
@@ -130,7 +167,7 @@ int step_command(MPI_Comm comm, std::span<const std::string> arguments, std::ost
 }  // namespace
 
 int bench_command(MPI_Comm comm, std::span<const std::string> arguments, std::ostream& out) {
-  const std::vector<std::string> commands{"kernels", "step"};
+  const std::vector<std::string> commands{"kernels", "elements", "step"};
   if (asks_for_help(arguments)) {
     if (rank_of(comm) == 0) out << help;
     return 0;
@@ -139,6 +176,7 @@ int bench_command(MPI_Comm comm, std::span<const std::string> arguments, std::os
     throw UserError("evert bench needs a command: " + list_of(commands) + "; see evert bench --help");
   const auto& command = arguments.front();
   if (command == "step") return step_command(comm, arguments.subspan(1), out);
+  if (command == "elements") return elements_command(comm, arguments.subspan(1), out);
   if (command == "kernels") return kernels_command(comm, arguments.subspan(1), out);
   throw UserError("evert bench: there is no command '" + command + "': must be " + list_of(commands) +
                   did_you_mean(command, commands));

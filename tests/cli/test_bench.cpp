@@ -48,6 +48,23 @@ TEST_P(Bench, WritesWhatItMeasures) {
   EXPECT_GT(json["sizes"]["small"]["inverted_share"].as<double>(), 0);
 }
 
+TEST_P(Bench, ComparesElements) {
+  const auto outcome = run_evert(split("bench elements -bench_size small -bench_seconds 0.01 -bench_json "
+                                       "out/elements.json -bench_svg out/elements.svg"),
+                                 GetParam(), place_, limit);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output << (outcome.errors.empty() ? "" : outcome.errors[0]);
+  const auto json = YAML::LoadFile(place_ / "out/elements.json");
+  ASSERT_EQ(json["elements"].size(), 6U);
+  for (const auto& element : json["elements"]) {
+    const auto kind = element["kind"].as<std::string>();
+    EXPECT_GT(element["force_seconds"].as<double>(), 0) << kind;
+    EXPECT_GT(element["stable_step"].as<double>(), 0) << kind;
+    EXPECT_LT(element["error"].as<double>(), 0) << kind << " is too stiff";
+  }
+  EXPECT_EQ(json["locking"].size(), 4U);
+  EXPECT_TRUE(fs::file_size(place_ / "out/elements.svg") > 1000);
+}
+
 INSTANTIATE_TEST_SUITE_P(Ranks, Bench, testing::Values(1, 2),
                          [](const auto& parameter) { return "np" + std::to_string(parameter.param); });
 
