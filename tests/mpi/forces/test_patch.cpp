@@ -34,8 +34,8 @@ void cut_columns(Mesh& mesh, int along_x) {
   mesh.cells = {hexes, wedges};
 }
 
-/// Of the muscle; the others have none.
-constexpr Vec3d fibre{0.6, 0, 0.8};
+/// Of the models that have fibres.
+const Vec3d fibre{2.0 / 3, -1.0 / 3, 2.0 / 3};
 
 Mesh make_mesh(const std::string& elements) {
   const auto cells = elements == "hex8" || elements == "mixed" ? BoxCells::hex8
@@ -51,10 +51,15 @@ Mesh make_mesh(const std::string& elements) {
   return mesh;
 }
 
-const std::vector<Material> models{RotatedLinear{.lame = Lame::from_young_poisson(1e4, 0.4)},
-                                   NeoHookean{.lame = Lame::from_young_poisson(1e4, 0.4)},
-                                   StVenantKirchhoff{.lame = Lame::from_young_poisson(1e4, 0.4)},
-                                   Muscle{.lame = Lame::from_young_poisson(1e4, 0.4), .activation = 0.7}};
+const std::vector<Material> models{
+    RotatedLinear{.lame = Lame::from_young_poisson(1e4, 0.4)},
+    NeoHookean{.lame = Lame::from_young_poisson(1e4, 0.4)},
+    StVenantKirchhoff{.lame = Lame::from_young_poisson(1e4, 0.4)},
+    MooneyRivlin{.lame = Lame::from_young_poisson(1e4, 0.4)},
+    Spline{.lame = Lame::from_young_poisson(1e4, 0.4)},
+    StableNeoHookean{.lame = Lame::from_young_poisson(1e4, 0.4)},
+    Muscle{.lame = Lame::from_young_poisson(1e4, 0.4), .peak_stress = 1e4, .activation = 0.6},
+    Tendon{.lame = Lame::from_young_poisson(1e4, 0.4), .peak_stress = 1e5}};
 
 /// Large stretches, a shear, a turn of half a circle, and the same inside out and pressed flat.
 const std::vector<Mat3d> deformations{
