@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -235,8 +236,10 @@ void check_fibre_options(const CommandOptions& options) {
     throw UserError("evert material: -fibre goes with muscle and tendon only");
   if (options.has("activation") && model != name_of(MaterialModel::muscle))
     throw UserError("evert material: -activation goes with muscle only");
-  if (options.has("fibre") && !(norm(options.three_numbers("fibre")) > 0))
-    throw UserError("evert material: -fibre must not be 0,0,0: it is a direction");
+  const double length = options.has("fibre") ? norm(options.three_numbers("fibre")) : 1;
+  if (!(length > 0 && std::isfinite(length)))
+    throw UserError(
+        "evert material: -fibre must not be 0,0,0, nor beyond what can be squared: it is a direction");
   if (options.has("activation") && !(options.number("activation") >= 0 && options.number("activation") <= 1))
     throw UserError("evert material: -activation must be in [0, 1], not " + options.text("activation"));
 }

@@ -78,6 +78,21 @@ TEST(Muscle, AFreeStripContractsUntilNothingPulls) {
   }
 }
 
+/// In free flight nothing but the muscle acts, and it acts on itself only.
+TEST(Muscle, KeepsMomentumAndAngularMomentum) {
+  const auto scene =
+      test::build(free_strip, {"bodies.strip.velocity=[1, 0, 0.5]", "bodies.strip.spin=[3, 1, -2]",
+                               "bodies.strip.damping=null", "bodies.strip.fibres.direction=[1, 2, 3]"});
+  auto& simulation = *scene.simulation;
+  const auto before = simulation.measure();
+  while (simulation.time() < 0.02) simulation.step(simulation.suggested_time_step());
+  const auto after = simulation.measure();
+  EXPECT_LE(norm(after.momentum - before.momentum), 1e-12 * norm(before.momentum));
+  EXPECT_LE(norm(after.angular_momentum - before.angular_momentum), 1e-12 * norm(before.angular_momentum));
+  EXPECT_GT(std::abs(after.kinetic_energy - before.kinetic_energy), 0.1 * before.kinetic_energy)
+      << "the muscle must have moved";
+}
+
 /// Curved fibres, middle nodes, a table of activation whose rise is under way, and a held end.
 const std::string curved_strip = R"(
 name: curved strip
@@ -125,6 +140,28 @@ TEST(Muscle, RestoredIsBitwiseEqual) {
   const auto restarted = test::build(curved_strip);
   restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
   EXPECT_EQ(after_steps(*restarted.simulation, 60), after_steps(*whole.simulation, 60));
+}
+
+/// The oldest estimate of the stable step that a step is made with, in steps.
+double oldest_estimate(Simulation& simulation, int steps) {
+  double oldest = 0;
+  for (int step = 0; step < steps; ++step) {
+    const double dt = simulation.suggested_time_step();
+    for (const auto& [name, value] : simulation.state_scalars())
+      if (name == "stable_time_step_age") oldest = std::max(oldest, value);
+    simulation.step(dt);
+  }
+  return oldest;
+}
+
+TEST(Muscle, StableStepIsEstimatedAnewWhileActivationRises) {
+  const auto oldest = [](const std::string& activation) {
+    const auto scene = test::build(free_strip, {"bodies.strip.activation=" + activation}, PETSC_COMM_SELF);
+    return oldest_estimate(*scene.simulation, 12);
+  };
+  EXPECT_EQ(oldest("[[-0.01, 0], [0.02, 1]]"), 1);
+  EXPECT_GT(oldest("[[-0.01, 1], [0.02, 0]]"), 1) << "what becomes softer needs no new estimate";
+  EXPECT_GT(oldest("0.5"), 1);
 }
 
 /// An event that sets a modulus to what it is must not forget the activation.
