@@ -22,8 +22,12 @@ ElasticForces elastic(const Specimen& specimen, const Material& of_cells) {
   return {specimen.mesh, std::span(&all, 1)};
 }
 
-FibreForces fibre_forces(const Specimen& specimen) {
-  return {elastic(specimen, bench_muscle()), elastic(specimen, bench_tendon())};
+std::vector<std::unique_ptr<MaterialForces>> forces_of(const Specimen& specimen,
+                                                       const std::vector<Material>& materials) {
+  std::vector<std::unique_ptr<MaterialForces>> all;
+  for (const Material& one : materials)
+    all.push_back(std::unique_ptr<MaterialForces>(new MaterialForces{one, elastic(specimen, one)}));
+  return all;
 }
 
 ElasticProperties properties(DampingModel damping) {
@@ -47,15 +51,24 @@ std::size_t parts_of(const DistributedMesh& mesh) {
 
 }  // namespace
 
-Material bench_muscle() { return Muscle{.lame = material.lame, .activation = 0.5}; }
-Material bench_tendon() { return Tendon{.lame = material.lame}; }
+std::vector<Material> other_materials() {
+  const Lame& lame = material.lame;
+  std::vector<Material> all{RotatedLinear{.lame = lame}, StVenantKirchhoff{.lame = lame},
+                            MooneyRivlin{.lame = lame}, Spline{.lame = lame}, StableNeoHookean{.lame = lame}};
+  for (const Material& one : materials_with_fibres()) all.push_back(one);
+  return all;
+}
+
+std::vector<Material> materials_with_fibres() {
+  return {Muscle{.lame = material.lame, .activation = 0.5}, Tendon{.lame = material.lame}};
+}
 
 TetSubject::TetSubject(MPI_Comm comm, int divisions)
     : specimen_(comm, CellType::tet4, divisions),
       result_(specimen_.mesh),
       plain_(elastic(specimen_, DampingModel::none)),
       damped_(elastic(specimen_, DampingModel::rotated)),
-      fibres_(fibre_forces(specimen_)),
+      others_(forces_of(specimen_, other_materials())),
       operator_(specimen_.mesh, damped_),
       assembled_(operator_, MATBAIJ),
       naive_(specimen_.mesh.cells.front().nodes, specimen_.mesh.rest_positions, material),
@@ -112,7 +125,8 @@ ElementSubject::ElementSubject(MPI_Comm comm, CellType type, int divisions)
       plain_(elastic(specimen_, DampingModel::none)) {}
 
 HexSubject::HexSubject(MPI_Comm comm, int divisions)
-    : ElementSubject(comm, CellType::hex8, divisions), fibres_(fibre_forces(specimen_)) {
+    : ElementSubject(comm, CellType::hex8, divisions),
+      others_(forces_of(specimen_, materials_with_fibres())) {
   const auto& cells = specimen_.mesh.cells.front();
   general_ =
       make_elastic_block({cells.type, cells.nodes, cells.interior, density}, specimen_.mesh.rest_positions,

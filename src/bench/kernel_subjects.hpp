@@ -36,13 +36,14 @@ class Parts {
   std::size_t part_ = 0;
 };
 
-/// Muscle at half activation and tendon, in the place of the isotropic material of a specimen.
-struct FibreForces {
-  ElasticForces muscle;
-  ElasticForces tendon;
+/// A material in the place of that of a specimen.
+struct MaterialForces {
+  Material material;
+  ElasticForces elastic;
 };
-[[nodiscard]] Material bench_muscle();
-[[nodiscard]] Material bench_tendon();
+/// Whatever else there is, each by default; muscle at half activation.
+[[nodiscard]] std::vector<Material> other_materials();
+[[nodiscard]] std::vector<Material> materials_with_fibres();
 
 /// A box of tetrahedra and all that is done to it.
 class TetSubject {
@@ -64,8 +65,8 @@ class TetSubject {
   // Collective; each does what its name says once, or to one part of the cells.
   void force() { plain_.update(specimen_.positions, result_); }
   void damped_force() { damped_.update(specimen_.positions, result_); }
-  void muscle_force() { fibres_.muscle.update(specimen_.positions, result_); }
-  void tendon_force() { fibres_.tendon.update(specimen_.positions, result_); }
+  [[nodiscard]] const auto& others() const { return others_; }
+  void force(MaterialForces& of) { of.elastic.update(specimen_.positions, result_); }
   void damping();
   void matrix_free_product() { check(MatMult(operator_.mat(), specimen_.velocities.vec(), result_.vec())); }
   void baij_product() { check(MatMult(assembled_.mat(), specimen_.velocities.vec(), result_.vec())); }
@@ -79,7 +80,7 @@ class TetSubject {
   NodeField result_;
   ElasticForces plain_;
   ElasticForces damped_;
-  FibreForces fibres_;
+  std::vector<std::unique_ptr<MaterialForces>> others_;
   DampingOperator operator_;
   AssembledDamping assembled_;
   NaiveForces naive_;
@@ -118,12 +119,12 @@ class HexSubject : public ElementSubject {
 
   /// By U and V, without sum factorisation; halo left out.
   void general_force();
-  void muscle_force() { fibres_.muscle.update(specimen_.positions, result_); }
-  void tendon_force() { fibres_.tendon.update(specimen_.positions, result_); }
+  [[nodiscard]] const auto& others() const { return others_; }
+  void force(MaterialForces& of) { of.elastic.update(specimen_.positions, result_); }
 
  private:
   std::unique_ptr<ElasticBlock> general_;
-  FibreForces fibres_;
+  std::vector<std::unique_ptr<MaterialForces>> others_;
 };
 
 /// What the machine can do.

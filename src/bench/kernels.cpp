@@ -25,16 +25,22 @@ KernelCost with_nodes(KernelCost cells, double nodes_per_item) {
   return {cells.flops, cells.divisions, cells.bytes + nodes_per_item * nodal_bytes};
 }
 
-/// The force of a model with fibres.
-Kernel fibre_kernel(const std::string& key, CellType type, const Material& material, double points,
-                    double nodes_per_point, std::function<void()> force) {
-  const auto model = std::visit([](const auto& one) { return std::string(one.name); }, material);
-  return {key,
-          std::string(name_of(type)) + " force, " + model,
-          type == CellType::tet4 ? "Mtet/s" : "Mpoint/s",
-          {points, std::move(force)},
-          Yardstick::naive,
-          with_nodes(force_cost(type, material), nodes_per_point)};
+std::string model_of(const Material& material) {
+  return std::visit([](const auto& one) { return std::string(one.name); }, material);
+}
+
+/// Adds the forces of the other materials of tetrahedra or hexahedra.
+template <class Subject>
+void add_other_materials(std::vector<Kernel>& kernels, CellType type, Subject& subject, double points,
+                         double nodes_per_point) {
+  const bool tets = type == CellType::tet4;
+  for (const auto& of : subject.others())
+    kernels.push_back({(tets ? "tet_" : "hex_") + model_of(of->material) + (tets ? "_mps" : "_mqps"),
+                       std::string(name_of(type)) + " " + model_of(of->material),
+                       tets ? "Mtet/s" : "Mpoint/s",
+                       {points, [&subject, &of] { subject.force(*of); }},
+                       Yardstick::naive,
+                       with_nodes(force_cost(type, of->material), nodes_per_point)});
 }
 
 /// The force of one element.
@@ -62,14 +68,6 @@ std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes, ElementSubje
        Yardstick::naive,
        with_nodes(force_cost(CellType::tet4, DampingModel::rotated), nodes)},
       force_kernel("hex_force_mqps", CellType::hex8, hexes),
-      fibre_kernel("tet_muscle_mps", CellType::tet4, bench_muscle(), tets.cells(), nodes,
-                   [&] { tets.muscle_force(); }),
-      fibre_kernel("tet_tendon_mps", CellType::tet4, bench_tendon(), tets.cells(), nodes,
-                   [&] { tets.tendon_force(); }),
-      fibre_kernel("hex_muscle_mqps", CellType::hex8, bench_muscle(), hexes.points(), hexes.nodes_per_point(),
-                   [&] { hexes.muscle_force(); }),
-      fibre_kernel("hex_tendon_mqps", CellType::hex8, bench_tendon(), hexes.points(), hexes.nodes_per_point(),
-                   [&] { hexes.tendon_force(); }),
       force_kernel("wedge6_force_mqps", CellType::wedge6, wedges),
       force_kernel("tet10_force_mqps", CellType::tet10, quadratic),
       {"general_path_mqps",
@@ -149,7 +147,9 @@ KernelSizeReport measure_kernels(MPI_Comm comm, const KernelSize& size, double s
   ElementSubject quadratic(comm, CellType::tet10, size.hex_divisions * 2 / 3);
   CeilingSubject ceilings(tets.memory());
 
-  const auto kernels = kernels_of(tets, hexes, wedges, quadratic);
+  auto kernels = kernels_of(tets, hexes, wedges, quadratic);
+  add_other_materials(kernels, CellType::tet4, tets, tets.cells(), tets.nodes_per_cell());
+  add_other_materials(kernels, CellType::hex8, hexes, hexes.points(), hexes.nodes_per_point());
   std::vector<Workload> workloads;
   for (const auto& kernel : kernels) workloads.push_back(kernel.workload);
   workloads.push_back({sum_over_ranks(comm, CeilingSubject::flops()), [&] { ceilings.multiply_add(); }});

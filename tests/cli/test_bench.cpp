@@ -38,9 +38,9 @@ TEST_P(Bench, WritesWhatItMeasures) {
   for (const char* key : {"date", "machine", "cpu_level"})
     EXPECT_FALSE(json[key].as<std::string>().empty()) << key;
   for (const char* key : {"tet_force_mps", "tet_force_damped_mps", "hex_force_mqps", "general_path_mqps",
-                          "tet_muscle_mps", "tet_tendon_mps", "hex_muscle_mqps", "hex_tendon_mqps", "svd_mps",
-                          "damping_mtps", "damping_matmult_mtps", "baij_matmult_mtps", "naive_tet_force_mps",
-                          "multiply_add_gflops", "division_gps", "triad_gbs"})
+                          "tet_muscle_mps", "tet_spline_mps", "hex_tendon_mqps", "tet_stable_neo_hookean_mps",
+                          "svd_mps", "damping_mtps", "damping_matmult_mtps", "baij_matmult_mtps",
+                          "naive_tet_force_mps", "multiply_add_gflops", "division_gps", "triad_gbs"})
     expect_rate(json[key]["small"], key);
   for (const char* group : {"multiple_of_naive", "share_of_ceiling"})
     EXPECT_GT(json[group]["small"]["tet_force_mps"].as<double>(), 0) << group;

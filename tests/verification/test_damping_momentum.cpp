@@ -132,7 +132,8 @@ TEST(MassProportionalDamping, SlowsFreeFlightAndIsAccountedFor) {
   }
 }
 
-/// Two free cubes, side by side, that breathe along one axis decay with the ratio ξ that the scene gives at its frequency.
+/// Two free cubes, side by side, that breathe along one axis decay with the ratio ξ that the scene gives at
+/// its frequency.
 TEST(DampingRatio, IsWhatTheVibrationDecaysWith) {
   const std::string bar = R"(
 name: bar
