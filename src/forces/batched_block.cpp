@@ -4,7 +4,9 @@
 #include "evert/elements/reference_element.hpp"
 
 #include "rest_point.hpp"
+#include "stiffness_matrix.hpp"
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -108,6 +110,26 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
       DampingPoint{rest.gradients, state.matrix(q), rest.volume}.add_to(element.nodes(), matrix, damping_);
     }
   }
+}
+
+void BatchedBlock::stiffness_matrices(const double* x, TangentForm form, const TakeCellMatrix& take) const {
+  const auto all_cells = [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element,
+                                                    const auto& model) {
+    std::array<double, std::size_t{9} * nodes * nodes> matrix;
+    for (LocalIndex cell = 0; cell < cells(); ++cell) {
+      const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
+      const auto at_nodes = nodal_values<nodes>(x, cell_nodes(cell));
+      matrix.fill(0);
+      for (std::size_t q = 0; q < points; ++q)
+        add_stiffness<nodes>(rest_point(element, element_block_, slot, q), at_nodes, model, form, matrix);
+      take(cell, matrix);
+    }
+  };
+  std::visit(
+      [&](const auto& model) {
+        with_reference_element(element_block_.type, [&](const auto& element) { all_cells(element, model); });
+      },
+      material_);
 }
 
 CellNodes BatchedBlock::cell_nodes(LocalIndex cell) const {

@@ -25,6 +25,7 @@ class BatchedBlock final : public ElasticBlock {
   void add_damping(const double* v, double* out, double factor, BatchRange batches) const override;
   void add_damping_diagonal(double* normal, double* shear, double factor) const override;
   void damping_matrix(LocalIndex cell, std::span<double> matrix) const override;
+  void stiffness_matrices(const double* x, TangentForm form, const TakeCellMatrix& take) const override;
   [[nodiscard]] CellNodes cell_nodes(LocalIndex cell) const override;
   [[nodiscard]] LocalIndex cells() const override { return element_block_.cells; }
   [[nodiscard]] double energy(const double* x) const override;

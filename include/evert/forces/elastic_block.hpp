@@ -4,6 +4,7 @@
 #include "evert/materials/material.hpp"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <span>
 #include <variant>
@@ -35,6 +36,16 @@ class CellNodes {
   std::size_t count_;
 };
 
+/// What ∂P/∂F a stiffness matrix is made of.
+enum class TangentForm {
+  full,       ///< as it is
+  projected,  ///< the nearest positive semidefinite one of every point: a Newton step on it descends
+};
+
+/// Takes the dense matrix of one cell, row-major 3n×3n, which lasts for the call. `cell` counts as in
+/// ElementBlock::cell_of_lane.
+using TakeCellMatrix = std::function<void(LocalIndex cell, std::span<const double> matrix)>;
+
 /// Forces of one (element type × material × damping) block; made by make_elastic_block for the CPU it runs
 /// on. None of its calls is collective. No call allocates except the constructor and set_material.
 class ElasticBlock {
@@ -58,6 +69,9 @@ class ElasticBlock {
   /// One cell's damping matrix, dense row-major 3n×3n, for assembly. `cell` counts as in
   /// ElementBlock::cell_of_lane.
   virtual void damping_matrix(LocalIndex cell, std::span<double> matrix) const = 0;
+  /// The stiffness matrix −∂f/∂x [N/m] of every cell at `x`, symmetric, given to `take` one by one. Allocates
+  /// nothing.
+  virtual void stiffness_matrices(const double* x, TangentForm form, const TakeCellMatrix& take) const = 0;
   /// Local node numbers of a cell.
   [[nodiscard]] virtual CellNodes cell_nodes(LocalIndex cell) const = 0;
   [[nodiscard]] virtual LocalIndex cells() const = 0;
