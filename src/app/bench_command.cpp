@@ -149,7 +149,7 @@ int step_command(MPI_Comm comm, std::span<const std::string> arguments, std::ost
   const auto scene = load_scene(comm, run.scene, run.overrides);
   apply_petsc_block(scene);
   auto built = build_scene(comm, scene);
-  reject_unused_options(comm, run.allow_unknown_options, built.simulation->elastic().damped());
+  reject_unused_options(comm, run.allow_unknown_options, solvers_of(*built.simulation));
 
   auto frames = std::make_unique<FrameTimes>(scene.output.frames_per_second);
   const auto& counted = *frames;

@@ -146,10 +146,10 @@ void report_surroundings(Report& report, const SceneConfig& scene, const Distrib
                                                                     : formatted("%g", event.value)));
 }
 
-/// Processor seconds of one step (wall time would measure what else the machine does); the first also sets
-/// the solvers up.
+/// Processor seconds of one step (wall time would measure what else the machine does). The first step of a
+/// motion also sets the solvers up; of states of rest it is the one with the most to do.
 double seconds_a_step(Simulation& simulation, double dt) {
-  simulation.step(dt);
+  if (!simulation.quasistatic()) simulation.step(dt);
   const auto begin = std::clock();
   simulation.step(dt);
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -220,12 +220,17 @@ void report_cost(Report& report, const SceneConfig& scene, Simulation& simulatio
     if (end > stretches[i].begin) steps += steps_between(stretches[i].begin, end, stretches[i].dt, stops);
     if (i > 0 && stretches[i].dt == stretches[i - 1].dt) continue;
     report.line("time step", formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
-                                 (fixed ? ", fixed" : ", automatic, as the initial state suggests"));
+                                 (fixed ? ", fixed"
+                                  : scene.integrator.method == IntegrationMethod::quasistatic
+                                      ? ", one load step from stop to stop"
+                                      : ", automatic, as the initial state suggests"));
   }
   report.line("steps", formatted("%s %.6g to the end time, %g s: these, cut to hit frames, log rows, "
                                  "checkpoints and events exactly",
                                  fixed ? "about" : "at least", steps, scene.end_time));
-  if (!fixed)
+  if (scene.integrator.method == IntegrationMethod::quasistatic)
+    report.line("steps", "each in parts where it does not converge at once (integrator.load_steps)");
+  else if (!fixed)
     report.line("steps", "more where elements stiffen or deform quickly (integrator.max_strain_increment)");
   if (const auto rate = scene.output.frames_per_second)
     report.line("frames", formatted("%.0f to ", std::floor(scene.end_time * *rate * (1 + 1e-12)) + 1) +
@@ -264,7 +269,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
   report_bodies(report, scene, built);
   report_surroundings(report, scene, built.simulation->mesh());
   report_cost(report, scene, *built.simulation);
-  reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, built.simulation->elastic().damped());
+  reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, solvers_of(*built.simulation));
   report.line("valid", "nothing wrong was found");
   return 0;
 }

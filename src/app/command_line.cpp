@@ -151,6 +151,8 @@ Solvers, also as a 'petsc:' block of the scene (the command line wins):
   -damping_ksp_type cg       any KSP for symmetric positive definite systems
   -damping_ksp_rtol 1e-8     relative to the change of momentum that the step asks for
   -damping_pc_type pbjacobi  shell: pbjacobi, jacobi, none; assembled: also gamg, hypre, icc, bjacobi, ...
+  -quasistatic_mat_type aij  operator of the quasistatic solves: aij, baij or sbaij
+  -quasistatic_snes_rtol 1e-9, -quasistatic_ksp_rtol 1e-6, -quasistatic_pc_type gamg, ...
   -damping_ksp_monitor, -damping_ksp_view, -log_view, -options_file, ...   as in any PETSc program
 
 )";

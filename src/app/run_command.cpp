@@ -112,6 +112,8 @@ RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Ob
   summary.steps = simulation.steps();
   summary.simulated_time = simulation.time();
   summary.cg_iterations = observers.statistics->cg_iterations;
+  summary.newton_iterations = observers.statistics->newton_iterations;
+  summary.linear_iterations = observers.statistics->linear_iterations;
   summary.frames = observers.frames == nullptr ? 0 : observers.frames->frames();
   summary.max_inverted_points = observers.statistics->max_inverted;
   summary.max_inverted_time = observers.statistics->max_inverted_time;
@@ -155,7 +157,7 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
     std::filesystem::remove(files("summary.json"));  // of a run before: must not speak for one that fails
   });
   auto built = build_scene(comm, scene);
-  reject_unused_options(comm, arguments.allow_unknown_options, built.simulation->elastic().damped());
+  reject_unused_options(comm, arguments.allow_unknown_options, solvers_of(*built.simulation));
   auto& simulation = *built.simulation;
   if (!arguments.restart.empty()) restore(simulation, arguments.restart, scene.identity);
   auto observers = make_observers(scene, simulation, files, arguments);
@@ -179,6 +181,7 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
 int run_command(MPI_Comm comm, const RunArguments& arguments) {
   if (arguments.help) {
     DampingSolver::print_options(comm);
+    EquilibriumSolver::print_options(comm);
     return done;
   }
   catch_signals();

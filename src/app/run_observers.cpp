@@ -9,6 +9,8 @@ namespace evert {
 
 void RunStatistics::observe(Simulation& simulation, const StepReport& report) {
   cg_iterations += report.cg_iterations;
+  newton_iterations += report.newton_iterations;
+  linear_iterations += report.linear_iterations;
   if (schedule_.due(simulation.time())) look(simulation);
 }
 
@@ -84,7 +86,8 @@ ProgressState ProgressObserver::state(const Simulation& simulation) const {
   return {simulation.time(), simulation.steps(), statistics_.inverted, statistics_.cg_iterations};
 }
 
-void ProgressObserver::observe(Simulation& simulation, const StepReport& /*report*/) {
+void ProgressObserver::observe(Simulation& simulation, const StepReport& report) {
+  for (const auto& note : report.notes) progress_.note(note);
   if (progress_.due()) progress_.show(state(simulation));
 }
 

@@ -15,6 +15,21 @@ Vec3d interpolate(std::span<const VelocityKeyframe> keyframes, double t) {
   return earlier->velocity + share * (later->velocity - earlier->velocity);
 }
 
+/// The integral of the velocity, exact: linear from keyframe to keyframe.
+Vec3d way(std::span<const VelocityKeyframe> keyframes, double begin, double end) {
+  Vec3d sum{};
+  const auto add = [&](double from, double to) {
+    if (to > from) sum += 0.5 * (to - from) * (interpolate(keyframes, from) + interpolate(keyframes, to));
+  };
+  double reached = begin;
+  for (const auto& key : keyframes) {
+    add(reached, std::min(key.time, end));
+    reached = std::max(reached, std::min(key.time, end));
+  }
+  add(reached, end);
+  return sum;
+}
+
 NodeConstraint along_axes(const std::array<bool, 3>& axes, const Vec3d& velocity) {
   NodeConstraint constraint{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -32,11 +47,13 @@ PrescribedMotion::PrescribedMotion(std::vector<PrescribedNodes> groups) : groups
   for (auto* list : {&now_, &group_, &joined_}) list->reserve(nodes);
 }
 
-std::span<const NodeConstraint> PrescribedMotion::at(double t) {
+/// `prescribed` gives the vector of a group that acts at `t`.
+template <class Prescribed>
+std::span<const NodeConstraint> PrescribedMotion::join_groups(double t, Prescribed&& prescribed) {
   now_.clear();
   for (const auto& group : groups_) {
     if (t < group.from || t > group.until) continue;
-    auto constraint = along_axes(group.axes, interpolate(group.keyframes, t));
+    auto constraint = along_axes(group.axes, prescribed(group));
     group_.clear();
     for (const auto node : group.nodes) {
       constraint.node = node;
@@ -46,6 +63,15 @@ std::span<const NodeConstraint> PrescribedMotion::at(double t) {
     std::swap(now_, joined_);
   }
   return now_;
+}
+
+std::span<const NodeConstraint> PrescribedMotion::at(double t) {
+  return join_groups(t, [t](const PrescribedNodes& group) { return interpolate(group.keyframes, t); });
+}
+
+std::span<const NodeConstraint> PrescribedMotion::ways(double begin, double t) {
+  return join_groups(
+      t, [=](const PrescribedNodes& group) { return way(group.keyframes, std::max(begin, group.from), t); });
 }
 
 }  // namespace evert

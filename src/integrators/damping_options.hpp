@@ -13,9 +13,7 @@ namespace evert {
 /// UserError for a preconditioner that cannot work with the matrix type or on this many ranks.
 [[nodiscard]] KspHandle damping_ksp(MPI_Comm comm, const std::string& matrix_type);
 
-/// Collective. Sets such a solver up for the assembled `mat` on trial and preconditions a vector.
-/// Preconditioners of several parts read the options of their parts only then: so options that nobody reads
-/// are noticed before the run, and what PETSc refuses becomes a UserError.
-void try_set_up(Mat mat, const std::string& matrix_type);
+/// Collective. Sets such a solver up for the assembled `mat` on trial: see try_set_up().
+void try_damping_set_up(Mat mat, const std::string& matrix_type);
 
 }  // namespace evert

@@ -5,6 +5,7 @@
 #include "evert/math/nodal.hpp"
 
 #include "damping_options.hpp"
+#include "vec_view.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,26 +14,6 @@
 
 namespace evert {
 namespace {
-
-/// Owned values of a Vec, for the life of the object.
-class VecView {
- public:
-  explicit VecView(Vec vec) : vec_(vec) {
-    PetscInt size = 0;
-    check(VecGetLocalSize(vec, &size));
-    check(VecGetArray(vec, &data_));
-    size_ = static_cast<std::size_t>(size);
-  }
-  ~VecView() { static_cast<void>(VecRestoreArray(vec_, &data_)); }
-  VecView(const VecView&) = delete;
-  VecView& operator=(const VecView&) = delete;
-  [[nodiscard]] std::span<double> values() const { return {data_, size_}; }
-
- private:
-  Vec vec_;
-  PetscScalar* data_ = nullptr;
-  std::size_t size_ = 0;
-};
 
 /// to = −from, in one pass.
 void set_to_negative(Vec to, Vec from) {
@@ -69,7 +50,7 @@ void DampingSolver::create_ksp() {
   if (assembled_ != nullptr) {
     operator_->set(0, {});
     assembled_->assemble();
-    try_set_up(mat, type);
+    try_damping_set_up(mat, type);
   }
   check(KSPSetOperators(ksp_.get(), mat, mat));
   check(KSPGetTolerances(ksp_.get(), &rtol_, &atol_, nullptr, nullptr));

@@ -105,7 +105,7 @@ int Newmark::correct(System& system, double dt, bool colliding) {
   set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
   if (!colliding)
     solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
-  system.update_forces();
+  system.update_forces(system.time + dt);
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
   follow_forces(system);

@@ -3,12 +3,13 @@
 namespace evert {
 
 System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
-               PrescribedMotion& prescribed_motion, const Vec3d& gravitation)
+               PrescribedMotion& prescribed_motion, const Vec3d& gravitation, BodyForce force)
     : mesh(distributed),
       elastic(elastic_forces),
       collisions(node_collisions),
       prescribed(prescribed_motion),
       gravity(gravitation),
+      body_force(std::move(force)),
       x(distributed),
       v(distributed),
       v_change(distributed),
@@ -19,13 +20,26 @@ System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces
   x.touched();
 }
 
-void System::update_forces() {
+void System::update_forces(double t) {
   elastic.update(x, f);
-  auto force = f.owned();
-  const auto mass = masses();
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] += mass[i / 3] * gravity[i % 3];
-  f.touched();
+  add_loads(t, f);
   ++force_updates;
+}
+
+void System::add_loads(double t, NodeField& sum) const {
+  auto load = sum.owned();
+  const auto mass = masses();
+  for (std::size_t i = 0; i < load.size(); ++i) load[i] += mass[i / 3] * gravity[i % 3];
+  if (body_force) add_body_load(t, load);
+  sum.touched();
+}
+
+void System::add_body_load(double t, std::span<double> owned) const {
+  NodeField load(mesh);
+  add_body_force(mesh, body_force, t, load);
+  elastic.halo().begin_add(load);
+  elastic.halo().end_add(load);
+  for (std::size_t i = 0; i < owned.size(); ++i) owned[i] += load.owned()[i];
 }
 
 }  // namespace evert

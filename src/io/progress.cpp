@@ -118,6 +118,12 @@ void Progress::show(const ProgressState& state, Clock::time_point now) {
   shown_at_ = now;
 }
 
+void Progress::note(const std::string& text) {
+  if (style_ == ProgressStyle::silent || rank_of(comm_) != 0) return;
+  std::fprintf(out_, style_ == ProgressStyle::rewriting ? "\r%s\x1b[K\n" : "%s\n", text.c_str());
+  std::fflush(out_);
+}
+
 void Progress::finish(const ProgressState& state, Clock::time_point now) {
   show(state, now);
   if (style_ == ProgressStyle::rewriting && rank_of(comm_) == 0) {

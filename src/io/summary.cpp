@@ -107,6 +107,8 @@ void write_summary(MPI_Comm comm, const std::string& path, const RunSummary& sum
          {"steps", summary.steps},
          {"frames", summary.frames},
          {"cg_iterations", summary.cg_iterations},
+         {"snes_iterations", summary.newton_iterations},
+         {"ksp_iterations", summary.linear_iterations},
          {"simulated_seconds", summary.simulated_time},
          {"wall_seconds", summary.wall_time},
          {"phase_seconds", seconds},

@@ -194,6 +194,8 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
     definition.events.push_back(timed_event(event, changing, whole.region_body, whole.region_group));
   definition.gravity = scene.gravity;
   set_initial_state(definition, mesh, scene, whole.bodies);
+  definition.method = scene.integrator.method;
+  definition.quasistatic = scene.integrator.quasistatic;
   definition.fixed_time_step = scene.integrator.time_step.value_or(0);
   definition.time_step = {scene.integrator.safety, scene.integrator.max_strain_increment};
   return {std::make_unique<Simulation>(std::move(mesh), std::move(definition)), std::move(whole.bodies)};

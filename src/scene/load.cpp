@@ -5,6 +5,7 @@
 
 #include "events.hpp"
 #include "overrides.hpp"
+#include "statics.hpp"
 #include "tables.hpp"
 #include "yaml.hpp"
 #include <algorithm>
@@ -90,6 +91,7 @@ SceneConfig parse_scene(std::string_view text, const std::string& file,
   resolve_mesh_paths(scene, root);
   resolve_constraints(scene, root);
   resolve_events(scene, root);
+  require_rest(scene, root);
   scene.text = canonical_text(root);
   scene.identity = identity_of(root);
   return scene;

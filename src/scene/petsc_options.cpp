@@ -7,13 +7,14 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string_view>
 
 namespace evert {
 namespace {
 
-constexpr std::string_view solver_prefix = "damping_";
+constexpr std::array<std::string_view, 2> solver_prefixes{"damping_", "quasistatic_"};
 
 /// Of the solves we make, without their prefix: options that mean nothing without a value.
 const std::vector<std::string> valued_options{"mat_type",
@@ -32,18 +33,30 @@ const std::vector<std::string> valued_options{"mat_type",
                                               "sub_pc_type",
                                               "sub_ksp_type",
                                               "mg_levels_ksp_type",
-                                              "mg_levels_pc_type"};
+                                              "mg_levels_pc_type",
+                                              "snes_type",
+                                              "snes_rtol",
+                                              "snes_atol",
+                                              "snes_stol",
+                                              "snes_max_it",
+                                              "snes_max_funcs",
+                                              "snes_linesearch_type"};
 /// And those that may stand alone.
-const std::vector<std::string> flag_options{"ksp_monitor", "ksp_view", "ksp_converged_reason",
-                                            "ksp_initial_guess_nonzero"};
+const std::vector<std::string> flag_options{
+    "ksp_monitor",  "ksp_view",  "ksp_converged_reason",  "ksp_initial_guess_nonzero",
+    "snes_monitor", "snes_view", "snes_converged_reason", "snes_linesearch_monitor",
+    "snes_ksp_ew"};
 /// PETSc reads these in each solve, not in the set-up.
-const std::vector<std::string> late_options{"ksp_converged_reason", "ksp_test_null_space"};
+const std::vector<std::string> late_options{"ksp_converged_reason", "ksp_test_null_space",
+                                            "snes_converged_reason", "snes_view"};
 
 /// Options worth a suggestion: those of the solves we make, and the ones of PETSc that users type.
 std::vector<std::string> well_known_options() {
   auto names = process_options();
-  for (const auto& list : {valued_options, flag_options})
-    for (const auto& name : list) names.push_back(std::string(solver_prefix) + name);
+  for (const auto prefix : solver_prefixes)
+    for (const auto& list : {valued_options, flag_options})
+      for (const auto& name : list)
+        if (prefix != "damping_" || !name.starts_with("snes_")) names.push_back(std::string(prefix) + name);
   return names;
 }
 
@@ -56,16 +69,29 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
 }
 
+/// The prefix of ours that `name` begins with; empty when none.
+std::string_view prefix_of(std::string_view name) {
+  for (const auto prefix : solver_prefixes)
+    if (name.starts_with(prefix)) return prefix;
+  return {};
+}
+
 /// Throws when `name`, without dash, needs a value and has none.
 void require_value(const std::string& name, bool has_value, const std::string& shown) {
-  if (has_value || !name.starts_with(solver_prefix)) return;
-  if (contains(valued_options, name.substr(solver_prefix.size())))
+  const auto prefix = prefix_of(name);
+  if (has_value || prefix.empty()) return;
+  if (contains(valued_options, name.substr(prefix.size())))
     throw UserError(shown + ": needs a value, but has none");
 }
 
-bool is_read_later(std::string_view name, bool damped) {
-  return damped && name.starts_with(solver_prefix) &&
-         contains(late_options, name.substr(solver_prefix.size()));
+/// Of a solver that the simulation has.
+bool is_live(std::string_view prefix, const LiveSolvers& live) {
+  return prefix == "quasistatic_" ? live.quasistatic : prefix == "damping_" && live.damping;
+}
+
+bool is_read_later(std::string_view name, const LiveSolvers& live) {
+  const auto prefix = prefix_of(name);
+  return is_live(prefix, live) && contains(late_options, name.substr(prefix.size()));
 }
 
 /// Options that were put into the database but never read, sorted so that every rank names the same one.
@@ -80,9 +106,14 @@ std::vector<std::string> unused_options() {
   return unused;
 }
 
-std::string complaint(const std::string& name, bool damped) {
-  if (!damped && name.starts_with(solver_prefix))
+std::string complaint(const std::string& name, const LiveSolvers& live) {
+  const auto prefix = prefix_of(name);
+  if (prefix == "damping_" && live.quasistatic)
+    return "-" + name + ": has no effect, since integrator.method is quasistatic";
+  if (prefix == "damping_" && !is_live(prefix, live))
     return "-" + name + ": has no effect, since nothing in this scene is damped (bodies.NAME.damping)";
+  if (prefix == "quasistatic_" && !is_live(prefix, live))
+    return "-" + name + ": has no effect, since integrator.method is not quasistatic";
   const auto match = nearest_match(name, well_known_options());
   return "-" + name + ": unknown option" + (match.empty() ? "" : " (did you mean '-" + match + "'?)") +
          "; -allow_unknown_options lets it pass";
@@ -97,6 +128,10 @@ const std::vector<std::string>& process_options() {
       "malloc_view",  "memory_view", "objects_dump", "options_file", "options_left", "options_monitor",
       "options_view", "version"};
   return names;
+}
+
+LiveSolvers solvers_of(const Simulation& simulation) {
+  return {!simulation.quasistatic() && simulation.elastic().damped(), simulation.quasistatic()};
 }
 
 void apply_petsc_block(const SceneConfig& scene) {
@@ -117,12 +152,12 @@ void require_option_values(const SceneConfig& scene, std::span<const std::string
   }
 }
 
-void reject_unused_options(MPI_Comm comm, bool allow_unknown, bool damped) {
+void reject_unused_options(MPI_Comm comm, bool allow_unknown, const LiveSolvers& live) {
   if (allow_unknown) return;
   std::string message;
   for (const auto& name : unused_options())
-    if (message.empty() && !contains(process_options(), name) && !is_read_later(name, damped))
-      message = complaint(name, damped);
+    if (message.empty() && !contains(process_options(), name) && !is_read_later(name, live))
+      message = complaint(name, live);
   agree_or_throw(comm, message);
 }
 

@@ -36,16 +36,46 @@ const Table<IntegratorConfig>& integrator_table() {
       Table<IntegratorConfig>("How time advances.")
           .optional("method", &IntegratorConfig::method,
                     one_of<IntegrationMethod>({{"newmark", IntegrationMethod::newmark,
-                                                "elastic forces explicit, damping implicit, second order"}}),
+                                                "elastic forces explicit, damping implicit, second order"},
+                                               {"quasistatic", IntegrationMethod::quasistatic,
+                                                "states of rest, without inertia, damping and obstacles"}}),
                     "newmark", "Time stepping.")
           .optional("time_step", &IntegratorConfig::time_step, word_or_number("auto", "s", above(0)), "1e-4",
-                    "auto: the largest stable and accurate step, found anew as the state changes.")
+                    "auto: the largest stable and accurate step, found anew as the state changes; with "
+                    "quasistatic, one step from each frame, event or other time that is hit to the next.")
           .optional("safety", &IntegratorConfig::safety, number("-", above_up_to(0, 1)), "0.5",
                     "With auto: fraction of the stable step.")
           .optional("max_strain_increment", &IntegratorConfig::max_strain_increment, number("-", above(0)),
                     "0.05",
                     "With auto: largest change of strain of an element in one step, relative to its stretch "
-                    "above 1.");
+                    "above 1.")
+          .optional(
+              "load_steps", [](auto& config) -> auto& { return config.quasistatic.load_steps; },
+              integer(1, 1'000'000), "10",
+              "Of quasistatic: parts that a change of loads, materials or prescribed positions is applied "
+              "in; "
+              "one that does not converge is halved.")
+          .optional(
+              "tangent", [](auto& config) -> auto& { return config.quasistatic.tangent; },
+              one_of<TangentChoice>(
+                  {{"adaptive", TangentChoice::adaptive,
+                    "projected until Newton's steps halve the residual, full from there on"},
+                   {"projected", TangentChoice::projected,
+                    "the nearest positive semidefinite tangent of every point"},
+                   {"full", TangentChoice::full, "the derivative of the stress as it is"}}),
+              "projected", "Of quasistatic: what the Newton steps are made with.")
+          .then([](IntegratorConfig& config, const Value& map, const std::string& path) {
+            const bool statics = config.method == IntegrationMethod::quasistatic;
+            const auto refuse = [&](const char* key, const char* method) {
+              if (const auto* value = map.find(key); value != nullptr)
+                fail(*value, join(path, key),
+                     std::string("has no effect: it goes with 'method: ") + method + "'");
+            };
+            for (const char* key : {"safety", "max_strain_increment"})
+              if (statics) refuse(key, "newmark");
+            for (const char* key : {"load_steps", "tangent"})
+              if (!statics) refuse(key, "quasistatic");
+          });
   return table;
 }
 

@@ -72,8 +72,9 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       elastic_(mesh_, definition.properties),
       collisions_(std::move(definition.obstacles), elastic_.masses()),
       prescribed_(std::move(definition.prescribed)),
-      system_(mesh_, elastic_, collisions_, prescribed_, definition.gravity),
-      integrator_(system_),
+      system_(mesh_, elastic_, collisions_, prescribed_, definition.gravity,
+              std::move(definition.body_force)),
+      integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
       activations_(std::move(definition.activations)),
@@ -103,7 +104,7 @@ StepReport Simulation::step_to(double end_time) {
 
 StepReport Simulation::advance(double dt) {
   try {
-    return integrator_.advance(system_, dt);
+    return std::visit([&](auto& integrator) { return integrator.advance(system_, dt); }, integrator_);
   } catch (const SimulationError& error) {  // of a solve, on all ranks; it knows no time
     throw SimulationError(moment() + error.what());
   }
@@ -147,6 +148,7 @@ double Simulation::suggested_time_step() {
   apply_due_events();
   refresh_forces();
   if (fixed_time_step_ > 0) return fixed_time_step_;
+  if (quasistatic()) return std::numeric_limits<double>::infinity();
   if (activation_rises(time_step_.horizon())) time_step_.reset();
   return time_step_.suggest(system_);
 }
@@ -162,7 +164,7 @@ void Simulation::apply_due_events() {
 void Simulation::refresh_forces() {
   if (!forces_stale_) return;
   activate(system_.time);
-  system_.update_forces();
+  system_.update_forces(system_.time);
   forces_stale_ = false;
 }
 

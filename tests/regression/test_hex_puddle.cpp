@@ -49,12 +49,12 @@ TEST(HexPuddle, CollapsesAndRecoversWithNothingInverted) {
   const double puddle = height(simulation);
   run_until(simulation, 3);
   const double error = rms_shape_error(mesh, simulation.positions(), 0, mesh.total_nodes);
-  test::print_verification("hex puddle, share of inverted points at most", "> 0.25", most_inverted, "-");
-  test::print_verification("hex puddle, height before recovery over that of the ring", "< 0.3",
-                           puddle / rest_height, "-");
-  test::print_verification("hex puddle, inverted points at the end", "0",
-                           static_cast<double>(simulation.inverted_points()), "0");
-  test::print_verification("hex puddle, RMS distance from its shape at the end [m]", "< 0.02", error, "-");
+  test::verify("hex puddle, share of inverted points at most", "> 0.25", most_inverted, "-");
+  test::verify("hex puddle, height before recovery over that of the ring", "< 0.3", puddle / rest_height,
+               "-");
+  test::verify("hex puddle, inverted points at the end", "0",
+               static_cast<double>(simulation.inverted_points()), "0");
+  test::verify("hex puddle, RMS distance from its shape at the end [m]", "< 0.02", error, "-");
   EXPECT_GT(most_inverted, 0.25);
   EXPECT_LT(puddle, 0.3 * rest_height);
   EXPECT_EQ(simulation.inverted_points(), 0);

@@ -1,16 +1,19 @@
 #pragma once
+#include "evert/core/collective.hpp"
+
 #include <petscsys.h>
 
 #include <cstdio>
+#include <string>
 
+/// The lines that scripts/verify makes docs/verification.md of.
 namespace evert::test {
 
-/// Rank 0 prints a row of a table of verifications: what, what theory says, what was found, and how far apart
-/// they may be, as `expected` and `tolerance` are written.
-inline void print_verification(const char* what, const char* expected, double found, const char* tolerance) {
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  if (rank == 0) std::printf("verify: %s | %s | %.6g | %s\n", what, expected, found, tolerance);
+/// Prints "verify: what | expected | found | tolerance" from rank 0. Not collective.
+inline void verify(const std::string& what, const std::string& expected, double found,
+                   const std::string& tolerance) {
+  if (rank_of(PETSC_COMM_WORLD) == 0)
+    std::printf("verify: %s | %s | %.6g | %s\n", what.c_str(), expected.c_str(), found, tolerance.c_str());
 }
 
 }  // namespace evert::test

@@ -27,8 +27,7 @@ std::string text(double value) {
 }
 
 void expect_near(const std::string& what, double expected, double found, double tolerance) {
-  test::print_verification(what.c_str(), text(expected).c_str(), found,
-                           (text(100 * tolerance) + " %").c_str());
+  test::verify(what.c_str(), text(expected).c_str(), found, (text(100 * tolerance) + " %").c_str());
   EXPECT_NEAR(found, expected, tolerance * expected) << what;
 }
 
@@ -151,8 +150,8 @@ TEST(Locking, OfTet4IsMeasuredAndTet10HasLittle) {
     const double theory = bench::timoshenko(beam).tip_deflection;
     const double tet4 = answer_of(BoxCells::tet6, 4, false, beam, false).tip_deflection / theory;
     const double tet10 = answer_of(BoxCells::tet6, 4, true, beam, false).tip_deflection / theory;
-    test::print_verification(("beam, tet4, share of the deflection at nu " + text(nu)).c_str(),
-                             nu < 0.4 ? "0.5 to 1" : "less and less", tet4, "-");
+    test::verify(("beam, tet4, share of the deflection at nu " + text(nu)).c_str(),
+                 nu < 0.4 ? "0.5 to 1" : "less and less", tet4, "-");
     expect_near("beam, tet10, share of the deflection at nu " + text(nu), 1, tet10, 0.01);
     if (nu == 0.499) {
       EXPECT_LT(tet4, 0.5) << "if it does not lock, docs/elements.md is wrong";

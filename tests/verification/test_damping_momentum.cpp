@@ -61,13 +61,12 @@ TEST(AngularMomentum, IsLostByRotatedDampingAndKeptByTheOthers) {
              blended = fly("blended", 1e-3);
   const auto finer = fly("objective", 5e-4), rotated_finer = fly("rotated", 5e-4);
   ASSERT_GT(blended.least_stretch, 0.5) << "the threshold of blended";
-  test::print_verification("angular momentum lost in 0.2 s, rotated", "> 0.001", rotated.loss, "-");
-  test::print_verification("angular momentum lost in 0.2 s, objective", "0 (second order in the step)",
-                           objective.loss, "1e-4");
-  test::print_verification("angular momentum lost in 0.2 s, blended", "that of objective", blended.loss,
-                           "1e-12");
-  test::print_verification("loss of objective at half of the step over that at the step", "0.25",
-                           finer.loss / objective.loss, "0.1");
+  test::verify("angular momentum lost in 0.2 s, rotated", "> 0.001", rotated.loss, "-");
+  test::verify("angular momentum lost in 0.2 s, objective", "0 (second order in the step)", objective.loss,
+               "1e-4");
+  test::verify("angular momentum lost in 0.2 s, blended", "that of objective", blended.loss, "1e-12");
+  test::verify("loss of objective at half of the step over that at the step", "0.25",
+               finer.loss / objective.loss, "0.1");
   EXPECT_GT(rotated.loss, 0.001);
   EXPECT_NEAR(rotated_finer.loss, rotated.loss, 0.1 * rotated.loss) << "no matter of the step";
   EXPECT_LT(objective.loss, 1e-4);
@@ -105,10 +104,8 @@ integrator: {time_step: 1.0e-4}
 TEST(FlatBody, IsDampedByBlendedAndRotatedButNotByObjective) {
   const double rotated = energy_left("rotated"), objective = energy_left("objective"),
                blended = energy_left("blended");
-  test::print_verification("kinetic energy left across a flat block, objective", "about 1", objective,
-                           "0.05");
-  test::print_verification("kinetic energy left across a flat block, blended", "that of rotated", blended,
-                           "1e-6");
+  test::verify("kinetic energy left across a flat block, objective", "about 1", objective, "0.05");
+  test::verify("kinetic energy left across a flat block, blended", "that of rotated", blended, "1e-6");
   EXPECT_GT(objective, 0.95);
   EXPECT_LT(rotated, 0.7);
   EXPECT_NEAR(blended, rotated, 1e-6);
@@ -125,8 +122,8 @@ TEST(MassProportionalDamping, SlowsFreeFlightAndIsAccountedFor) {
     for (int step = 0; step < 500; ++step) simulation.step(1e-3);
     const auto now = simulation.measure();
     const double left = norm(now.momentum) / norm(start.momentum);
-    test::print_verification("momentum left of a flight of 0.5 s, mass-proportional damping 3 /s",
-                             "exp(-1.5) = 0.22313", left, "1e-6");
+    test::verify("momentum left of a flight of 0.5 s, mass-proportional damping 3 /s", "exp(-1.5) = 0.22313",
+                 left, "1e-6");
     EXPECT_NEAR(left, std::exp(-1.5), 1e-6);  // of second order: (a Δt)²/12 · 1.5 = 1.1e-6 of it
     EXPECT_LE(norm(now.momentum - start.momentum - now.damping_impulse), 1e-11 * norm(start.momentum));
   }
@@ -168,7 +165,7 @@ petsc: {damping_ksp_rtol: 1e-12}
                               "{model: none, mass_ratio: 0.05, " + at}) {
     const double decay = std::sqrt(energy_after(damping));
     const double expected = std::exp(-3 * 2 * 3.14159265358979323846 * 0.05 / std::sqrt(1 - 0.05 * 0.05));
-    test::print_verification("amplitude after three periods, damping ratio 0.05", "0.38923", decay, "1e-3");
+    test::verify("amplitude after three periods, damping ratio 0.05", "0.38923", decay, "1e-3");
     EXPECT_NEAR(decay, expected, 1e-3) << damping;
   }
 }

@@ -22,6 +22,8 @@ class RunStatistics final : public Observer {
   void finish(Simulation& simulation) override { look(simulation); }
 
   std::int64_t cg_iterations = 0;
+  std::int64_t newton_iterations = 0;
+  std::int64_t linear_iterations = 0;
   GlobalIndex inverted = 0;  ///< at the last look
   GlobalIndex max_inverted = 0;
   double max_inverted_time = 0;  ///< [s]

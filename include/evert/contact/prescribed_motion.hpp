@@ -32,9 +32,15 @@ class PrescribedMotion {
 
   /// The constraints at time `t` [s], sorted by node; valid until the next call.
   [[nodiscard]] std::span<const NodeConstraint> at(double t);
+  /// The same at time `t`, with the way [m] from time `begin` on in the place of the velocity: what of it
+  /// lies within `from` and `until` of each group.
+  [[nodiscard]] std::span<const NodeConstraint> ways(double begin, double t);
   [[nodiscard]] bool empty() const { return groups_.empty(); }
 
  private:
+  template <class Prescribed>
+  std::span<const NodeConstraint> join_groups(double t, Prescribed&& prescribed);
+
   std::vector<PrescribedNodes> groups_;
   std::vector<NodeConstraint> now_, group_, joined_;
 };

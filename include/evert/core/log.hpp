@@ -17,12 +17,14 @@ enum class Phase : std::size_t {
   stretch_svd,    ///< singular values for reports: minimum stretches, stable step
   damping_apply,  ///< products with the damping operator
   damping_solve,  ///< the conjugate gradients around them
+  assembly,       ///< stiffness matrices of the quasistatic solves
+  static_solve,   ///< the quasistatic solves around forces and assembly
   contact,        ///< obstacles and friction
   vector_update,  ///< nodal updates of positions and velocities
   halo,           ///< sending ghost values, and waiting for them
   io,             ///< frames, logs and checkpoints
 };
-inline constexpr std::size_t phase_count = 9;
+inline constexpr std::size_t phase_count = 11;
 [[nodiscard]] std::string_view name_of(Phase phase);
 
 /// Registers the phases as PETSc events, and "Evert set-up" and "Evert time steps" as stages. Call once after

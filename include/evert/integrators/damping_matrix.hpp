@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/integrators/damping_operator.hpp"
+#include "evert/integrators/node_matrix.hpp"
 
 namespace evert {
 
@@ -14,24 +15,16 @@ class AssembledDamping {
 
   /// Collective. Fills in the entries for the operator's present C, s and constraints.
   void assemble();
-  [[nodiscard]] Mat mat() const { return mat_.get(); }
+  [[nodiscard]] Mat mat() const { return matrix_.mat(); }
 
  private:
-  void preallocate(const char* type);
-  void attach_rigid_body_modes();
-  void add_cell(Mat mat);
-  [[nodiscard]] GlobalIndex global_number(PetscInt local) const;
   void share_projectors();
-  void project_cell(std::span<const LocalIndex> nodes);
-  template <class Work>
-  void for_each_cell(Work&& work);
+  void project_cell(const CellNodes& nodes);
 
   const DampingOperator& damping_;
-  bool upper_only_;                    // sbaij stores the upper triangle
   std::vector<NodeField> projectors_;  // the three columns of P per local node
-  std::vector<PetscInt> rows_;         // scratch: one cell's nodes
   std::vector<double> cell_;           // scratch: one cell's matrix, row-major
-  MatHandle mat_;
+  NodeMatrix matrix_;
 };
 
 }  // namespace evert

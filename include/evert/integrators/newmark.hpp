@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/integrators/damping_solver.hpp"
+#include "evert/integrators/step_report.hpp"
 #include "evert/integrators/system.hpp"
 
 #include <cstdint>
@@ -7,14 +8,6 @@
 #include <vector>
 
 namespace evert {
-
-/// What one step did.
-struct StepReport {
-  double dt = 0;                ///< [s]
-  int cg_iterations = 0;        ///< over the damping solves of the step
-  LocalIndex contacts = 0;      ///< colliding owned nodes on this rank
-  bool stop_requested = false;  ///< some rank wants the run to end here
-};
 
 /// Newmark's scheme with elastic forces explicit and damping forces implicit; second order, variable step.
 /// paper A, section 9; PHYSICS 5

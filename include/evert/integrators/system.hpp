@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/contact/collisions.hpp"
 #include "evert/contact/prescribed_motion.hpp"
+#include "evert/forces/body_force.hpp"
 #include "evert/forces/elastic_forces.hpp"
 
 #include <cstdint>
@@ -15,7 +16,8 @@ struct System {
   ElasticForces& elastic;
   Collisions& collisions;
   PrescribedMotion& prescribed;
-  Vec3d gravity;  ///< [m/s^2]
+  Vec3d gravity;         ///< [m/s^2]
+  BodyForce body_force;  ///< besides gravity; empty where there is none
 
   NodeField x;         ///< positions [m]; ghosts are up to date between steps
   NodeField v;         ///< velocities [m/s]
@@ -32,14 +34,20 @@ struct System {
   } impulses;
 
   System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
-         PrescribedMotion& prescribed_motion, const Vec3d& gravitation);
+         PrescribedMotion& prescribed_motion, const Vec3d& gravitation, BodyForce force = {});
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
   [[nodiscard]] std::span<const double> masses() const { return elastic.masses(); }
-  /// Collective. f = elastic forces + m g at x, and C(x). To be called whenever x, a material or gravity
-  /// changes.
-  void update_forces();
+  /// Collective. f = elastic forces at x and loads at `t` [s], and C(x). To be called whenever x, a material
+  /// or gravity changes.
+  void update_forces(double t);
+  /// Collective. Adds the weights and what the body force does at `t` [s] to `sum`, on owned nodes [N]: all
+  /// that does not depend on x.
+  void add_loads(double t, NodeField& sum) const;
+
+ private:
+  void add_body_load(double t, std::span<double> owned) const;
 };
 
 }  // namespace evert

@@ -41,6 +41,8 @@ class Progress {
   [[nodiscard]] bool due(Clock::time_point now = Clock::now()) const;
   /// Not collective.
   void show(const ProgressState& state, Clock::time_point now = Clock::now());
+  /// A line of its own. Not collective.
+  void note(const std::string& text);
   /// Shows the last state and leaves the line. Not collective.
   void finish(const ProgressState& state, Clock::time_point now = Clock::now());
 

@@ -18,9 +18,11 @@ struct RunSummary {
   GlobalIndex nodes = 0;
   GlobalIndex cells = 0;
   std::int64_t steps = 0;
-  double simulated_time = 0;  ///< [s]
-  double wall_time = 0;       ///< [s]
-  std::int64_t cg_iterations = 0;
+  double simulated_time = 0;           ///< [s]
+  double wall_time = 0;                ///< [s]
+  std::int64_t cg_iterations = 0;      ///< of the damping solves
+  std::int64_t newton_iterations = 0;  ///< of the quasistatic solves (SNES)
+  std::int64_t linear_iterations = 0;  ///< of the linear solves in those (KSP)
   std::int64_t frames = 0;
   GlobalIndex max_inverted_points = 0;
   double max_inverted_time = 0;  ///< [s] when there were most

@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/core/number_array.hpp"
+#include "evert/integrators/method.hpp"
 #include "evert/materials/damping.hpp"
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
@@ -287,13 +288,12 @@ struct OutputConfig {
   std::optional<double> energy_log;         ///< [s] between rows, 0: every step; empty: no log
 };
 
-enum class IntegrationMethod { newmark };
-
 struct IntegratorConfig {
   IntegrationMethod method = IntegrationMethod::newmark;
   std::optional<double> time_step;    ///< [s]; empty: auto
   double safety = 0.9;                ///< [-] of the stable step, with auto
   double max_strain_increment = 0.1;  ///< [-] largest change of strain in one step, with auto
+  QuasistaticOptions quasistatic;     ///< of that method
 };
 
 struct CheckpointConfig {

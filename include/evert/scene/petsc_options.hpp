@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/scene/config.hpp"
+#include "evert/sim/simulation.hpp"
 
 #include <mpi.h>
 
@@ -21,9 +22,17 @@ void apply_petsc_block(const SceneConfig& scene);
 /// `command_line` are RunArguments::petsc. Not collective, the same on every rank.
 void require_option_values(const SceneConfig& scene, std::span<const std::string> command_line);
 
+/// The solvers that options may be for.
+struct LiveSolvers {
+  bool damping = false;
+  bool quasistatic = false;
+};
+/// Those that a simulation has.
+[[nodiscard]] LiveSolvers solvers_of(const Simulation& simulation);
+
 /// Collective. Throws UserError when the database holds an option that nothing has read, with the nearest one
-/// that we know, unless `allow_unknown`; nothing reads the options of solves that an undamped scene does not
+/// that we know, unless `allow_unknown`; nothing reads the options of solves that the simulation does not
 /// make. Call when everything that reads options exists.
-void reject_unused_options(MPI_Comm comm, bool allow_unknown, bool damped);
+void reject_unused_options(MPI_Comm comm, bool allow_unknown, const LiveSolvers& live);
 
 }  // namespace evert

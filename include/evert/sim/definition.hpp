@@ -2,6 +2,7 @@
 #include "evert/contact/collisions.hpp"
 #include "evert/contact/prescribed_motion.hpp"
 #include "evert/forces/elastic_forces.hpp"
+#include "evert/integrators/method.hpp"
 #include "evert/integrators/time_step.hpp"
 #include "evert/sim/activation.hpp"
 
@@ -27,9 +28,12 @@ struct SimulationDefinition {
   std::vector<Activation> activations;      ///< of regions of muscle
   std::vector<TimedEvent> events;
   Vec3d gravity{};                        ///< [m/s^2]
+  BodyForce body_force;                   ///< besides gravity
   std::vector<Vec3d> initial_positions;   ///< per owned node [m]; empty: at rest shape
   std::vector<Vec3d> initial_velocities;  ///< per owned node [m/s]; empty: at rest
-  double fixed_time_step = 0;             ///< [s]; 0: chosen by TimeStepControl
+  IntegrationMethod method = IntegrationMethod::newmark;
+  QuasistaticOptions quasistatic;  ///< of that method
+  double fixed_time_step = 0;      ///< [s]; 0: chosen by TimeStepControl
   TimeStepOptions time_step;
 };
 

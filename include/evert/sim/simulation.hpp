@@ -1,5 +1,5 @@
 #pragma once
-#include "evert/integrators/newmark.hpp"
+#include "evert/integrators/integrator.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
 #include "evert/sim/definition.hpp"
@@ -51,10 +51,14 @@ class Simulation {
   StepReport step(double dt);
   /// The same to exactly `end_time` [s], in one step.
   StepReport step_to(double end_time);
-  /// The largest step that is stable and accurate now [s]; the fixed step where the scene names one.
+  /// The largest step that is stable and accurate now [s], infinity where nothing limits it (as in a
+  /// quasistatic simulation); the fixed step where the scene names one.
   [[nodiscard]] double suggested_time_step();
   /// The time of the next event [s], or infinity. Not collective.
   [[nodiscard]] double next_event() const;
+
+  /// True where the steps are states of rest.
+  [[nodiscard]] bool quasistatic() const { return std::holds_alternative<Quasistatic>(integrator_); }
 
   /// Throws SimulationError with the time, `what`, and what may help. Not collective; for all ranks together.
   [[noreturn]] void give_up(const std::string& what) const;
@@ -109,7 +113,7 @@ class Simulation {
   Collisions collisions_;
   PrescribedMotion prescribed_;
   System system_;
-  Newmark integrator_;
+  Integrator integrator_;
   double fixed_time_step_;
   TimeStepControl time_step_;
   std::vector<Activation> activations_;

@@ -33,7 +33,7 @@ class PetscOptionsTest : public ::testing::Test {
   }
 
   static std::string complaint(bool allow_unknown = false, bool damped = true) {
-    return message_of([&] { reject_unused_options(PETSC_COMM_WORLD, allow_unknown, damped); });
+    return message_of([&] { reject_unused_options(PETSC_COMM_WORLD, allow_unknown, {.damping = damped}); });
   }
 
   static std::string missing(const SceneConfig& scene, const std::vector<std::string>& command_line) {

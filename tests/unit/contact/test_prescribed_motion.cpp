@@ -45,5 +45,25 @@ TEST(PrescribedMotion, OfTwoGroupsTheFirstWinsPerComponent) {
   EXPECT_NEAR(norm(prescribed - Vec3d{{1, 8, 7}}), 0, 1e-15);
 }
 
+TEST(PrescribedMotion, WaysAreTheIntegralOfTheVelocity) {
+  PrescribedNodes group{{3}, {{1, {0, 0, 0}}, {2, {2, 0, 0}}, {4, {2, 0, 0}}}};
+  PrescribedMotion motion({group});
+  const auto way = [&](double begin, double end) { return motion.ways(begin, end).front().prescribed[0]; };
+  EXPECT_DOUBLE_EQ(way(0, 1), 0);
+  EXPECT_DOUBLE_EQ(way(0, 2), 1);
+  EXPECT_DOUBLE_EQ(way(1, 1.5), 0.25);
+  EXPECT_DOUBLE_EQ(way(1.5, 3), 0.75 + 2);
+  EXPECT_DOUBLE_EQ(way(0, 10), 1 + 16);
+  EXPECT_DOUBLE_EQ(way(5, 6), 2);
+}
+
+TEST(PrescribedMotion, WaysBeginWithTheirGroupAndEndWithIt) {
+  PrescribedNodes group{{0}, {{0, {0, 3, 0}}}, {false, true, false}, 1, 2};
+  PrescribedMotion motion({group});
+  EXPECT_TRUE(motion.ways(0, 0.5).empty());
+  EXPECT_DOUBLE_EQ(motion.ways(0, 1.5).front().prescribed[1], 1.5);
+  EXPECT_TRUE(motion.ways(0, 3).empty()) << "free at the end";
+}
+
 }  // namespace
 }  // namespace evert

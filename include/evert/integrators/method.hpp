@@ -1,0 +1,20 @@
+#pragma once
+
+/// What can be chosen about the way that time advances, as plain values.
+namespace evert {
+
+enum class IntegrationMethod { newmark, quasistatic };
+
+/// Which tangent the Newton steps of `quasistatic` are made with.
+enum class TangentChoice {
+  adaptive,   ///< projected until full steps halve the residual, from there on the full one
+  projected,  ///< the nearest positive semidefinite one of every point
+  full,       ///< ∂P/∂F as it is
+};
+
+struct QuasistaticOptions {
+  int load_steps = 1;  ///< parts that a change of load or position is applied in, at first
+  TangentChoice tangent = TangentChoice::adaptive;
+};
+
+}  // namespace evert

@@ -1,0 +1,94 @@
+#include "evert/integrators/quasistatic.hpp"
+
+#include "evert/core/error.hpp"
+#include "evert/math/nodal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace evert {
+namespace {
+
+constexpr int most_halvings = 10;
+// Parts are sums of powers of two of 1 / load_steps, which need not add up to 1 exactly.
+constexpr double whole = 1 - 1e-9;
+
+void copy_owned(const NodeField& from, NodeField& to) {
+  std::copy(from.owned().begin(), from.owned().end(), to.owned().begin());
+  to.touched();
+}
+
+std::string halving_note(double time, double applied, double part,
+                         const EquilibriumSolver::Outcome& outcome) {
+  std::array<char, 160> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "t = %.6g s: no rest found (%s) with %.4g %% of the change applied, going on with %.4g %% of it", time,
+      outcome.reason.c_str(), 100 * (applied + part), 100 * (applied + part / 2));
+  return text.data();
+}
+
+}  // namespace
+
+Quasistatic::Quasistatic(const System& system, const QuasistaticOptions& options)
+    : options_(options),
+      solver_(system, options.tangent),
+      unbalanced_(system.mesh),
+      withheld_(system.mesh),
+      reached_(system.mesh) {}
+
+StepReport Quasistatic::advance(System& system, double dt) {
+  StepReport report{.dt = dt};
+  const double end = system.time + dt;
+  const auto ways = system.prescribed.ways(system.time, end);
+  system.update_forces(end);
+  copy_owned(system.f, unbalanced_);
+  copy_owned(system.x, reached_);
+  const double largest = 1.0 / options_.load_steps;
+  double applied = 0, part = largest;
+  while (applied < whole) {
+    const double next = applied + part < whole ? applied + part : 1;
+    held_.assign(ways.begin(), ways.end());
+    for (auto& c : held_) c.prescribed = (next - applied) * c.prescribed;
+    for (std::size_t i = 0; i < withheld_.owned().size(); ++i)
+      withheld_.owned()[i] = (1 - next) * unbalanced_.owned()[i];
+    const auto outcome = solver_.solve(system.x, held_, withheld_, end);
+    report.newton_iterations += outcome.newton_iterations;
+    report.linear_iterations += outcome.linear_iterations;
+    if (outcome.converged) {
+      copy_owned(system.x, reached_);
+      applied = next;
+      part = std::min(largest, 2 * part);
+      continue;
+    }
+    report.notes.push_back(halving_note(end, applied, next - applied, outcome));
+    copy_owned(reached_, system.x);
+    part /= 2;
+    if (part < largest / (1 << most_halvings))
+      throw SimulationError(
+          "no state of rest was found (" + outcome.reason + "), not even with " +
+          std::to_string(1 << most_halvings) +
+          " times smaller load steps; a smaller integrator.time_step, more integrator.load_steps "
+          "or other -quasistatic_snes and -quasistatic_ksp options may help");
+  }
+  system.update_forces(end);
+  system.time = end;
+  account(system, dt);
+  return report;
+}
+
+/// Nothing moves; what held nodes exert is what is left of the forces on them.
+void Quasistatic::account(System& system, double dt) const {
+  for (auto* field : {&system.v, &system.v_change}) {
+    std::fill(field->owned().begin(), field->owned().end(), 0.0);
+    field->touched();
+  }
+  for (const double m : system.masses()) system.impulses.gravity += dt * m * system.gravity;
+  for (const auto& c : held_) {
+    const auto force = node_value(system.f.owned(), c.node);
+    system.impulses.constraint -= dt * (force - c.free * force);
+  }
+}
+
+}  // namespace evert

@@ -1,0 +1,185 @@
+// States of rest found by Newton's method: how fast, from where, and that they are those of the damped
+// motion.
+#include "evert/sim/shape_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.hpp"
+#include "tests/support/verify.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <unistd.h>
+
+namespace evert {
+namespace {
+
+/// A soft bar that hangs sideways from one end, much bent by its weight.
+const std::string bar = R"(
+name: bar
+end_time: 1
+gravity: [0, -9.81, 0]
+bodies:
+  bar:
+    mesh: {generate: box, size: [1, 0.25, 0.25], cells: [8, 2, 2], cell: tet6}
+    density: 1000
+    material: {model: neo_hookean, youngs_modulus: 3.0e5, poissons_ratio: 0.4}
+    damping: {model: rotated, stiffness_proportional: 0.05}
+constraints:
+  - {body: bar, node_set: x_min, fixed: true}
+integrator: {method: quasistatic}
+)";
+
+/// PETSc options for the life of the object, on all ranks.
+class Options {
+ public:
+  using Option = std::pair<std::string, std::string>;
+  Options(std::initializer_list<Option> options) : options_(options) {
+    for (const auto& [name, value] : options_)
+      check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+  }
+  ~Options() {
+    for (const auto& [name, value] : options_)
+      static_cast<void>(PetscOptionsClearValue(nullptr, name.c_str()));
+  }
+  Options(const Options&) = delete;
+  Options& operator=(const Options&) = delete;
+
+ private:
+  std::vector<Option> options_;
+};
+
+/// The norms of the residuals that SNES writes with its monitor.
+std::vector<double> residuals_of(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<double> norms;
+  for (std::string line; std::getline(in, line);) {
+    const auto at = line.find("Function norm ");
+    if (at != std::string::npos) norms.push_back(std::stod(line.substr(at + 14)));
+  }
+  return norms;
+}
+
+// r_{k+1} = C r_k²: the logarithm of the residual doubles. Two steps in a row must show it before rounding
+// ends it, with exact linear solves; the tangent is the full one there (adaptive).
+TEST(Quasistatic, ConvergesQuadraticallyNearRest) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("evert_snes_" + std::to_string(getppid()) + ".log");
+  std::vector<double> norms;
+  {
+    const Options options{{"-quasistatic_snes_monitor", "ascii:" + file.string()},
+                          {"-quasistatic_ksp_rtol", "1e-12"},
+                          {"-quasistatic_snes_rtol", "1e-12"}};
+    auto scene = test::build(bar);
+    scene.simulation->step_to(1);
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+  norms = residuals_of(file.string());
+  MPI_Barrier(PETSC_COMM_WORLD);
+  if (rank_of(PETSC_COMM_WORLD) == 0) std::filesystem::remove(file);
+  ASSERT_GE(norms.size(), 4U);
+  double best = 0;
+  for (std::size_t k = 2; k < norms.size(); ++k) {
+    const double order = std::log(norms[k] / norms[k - 1]) / std::log(norms[k - 1] / norms[k - 2]);
+    if (rank_of(PETSC_COMM_WORLD) == 0)
+      std::printf("residual %.3e after %.3e: order %.2f\n", norms[k], norms[k - 1], order);
+    // Both ratios from where Newton's theory holds to where rounding begins.
+    const bool in_range = norms[k - 1] < 1e-2 * norms[0] && norms[k] > 1e-13 * norms[0];
+    if (in_range) best = std::max(best, order);
+  }
+  test::verify("quasistatic: order of convergence near rest, bent bar", "2", best, ">= 1.8");
+  EXPECT_GE(best, 1.8);
+}
+
+TEST(Quasistatic, AgreesWithTheDampedMotion) {
+  const Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+  auto still = test::build(bar);
+  still.simulation->step_to(1);
+  auto moving = test::build(bar, {"integrator.method=newmark", "end_time=100"});
+  auto& simulation = *moving.simulation;
+  for (bool moves = true; moves && simulation.time() < 60;) {
+    for (int step = 0; step < 200; ++step) simulation.step(simulation.suggested_time_step());
+    const auto now = simulation.measure();
+    moves = now.kinetic_energy > 1e-17 * now.elastic_energy;
+  }
+  const double difference =
+      test::largest_difference(test::gathered(still.simulation->mesh(), still.simulation->positions()),
+                               test::gathered(simulation.mesh(), simulation.positions()));
+  test::verify("quasistatic: largest distance to the damped motion at rest, bent bar [m]", "0", difference,
+               "<= 1e-6");
+  EXPECT_LE(difference, 1e-6);
+  EXPECT_EQ(still.simulation->measure().kinetic_energy, 0);
+}
+
+TEST(Quasistatic, IsTheSameOnAnyNumberOfRanks) {
+  const Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+  auto alone = test::build(bar, {}, PETSC_COMM_SELF);
+  alone.simulation->step_to(1);
+  auto together = test::build(bar);
+  together.simulation->step_to(1);
+  EXPECT_LE(
+      test::largest_difference(test::gathered(alone.simulation->mesh(), alone.simulation->positions()),
+                               test::gathered(together.simulation->mesh(), together.simulation->positions())),
+      1e-8);
+}
+
+TEST(Quasistatic, HeldNodesCarryTheWeight) {
+  const Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+  auto scene = test::build(bar);
+  scene.simulation->step_to(1);
+  const auto now = scene.simulation->measure();
+  EXPECT_LE(norm(now.constraint_impulse + now.gravity_impulse), 1e-8 * norm(now.gravity_impulse));
+}
+
+const std::string ball = R"(
+name: scrambled ball
+end_time: 1
+bodies:
+  body:
+    mesh: {generate: ball, radius: 0.5, edge_length: 0.3}
+    density: 1000
+    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.4, compression_limit: 0.99}
+    start: {kind: scramble, seed: 1}
+integrator: {method: quasistatic}
+)";
+
+void expect_recovery(const std::string& name, const std::vector<std::string>& overrides) {
+  auto scene = test::build(ball, overrides);
+  auto& simulation = *scene.simulation;
+  const auto distance = [&] {
+    return rms_shape_error(simulation.mesh(), simulation.positions(), 0, simulation.mesh().total_nodes);
+  };
+  EXPECT_GT(distance(), 0.01) << name << " starts at rest";
+  const auto report = simulation.step_to(1);
+  const double error = distance();
+  EXPECT_EQ(simulation.inverted_points(), 0) << name;
+  EXPECT_LT(error, 1e-6) << name;
+  test::verify("quasistatic: RMS distance from the rest shape [m], " + name + ", " +
+                   std::to_string(report.newton_iterations) + " Newton steps",
+               "0, nothing inverted", error, "< 1e-6");
+}
+
+TEST(Quasistatic, FindsTheRestShapeOfAScrambledBall) {
+  for (int seed = 1; seed <= 3; ++seed)
+    expect_recovery("scrambled ball, seed " + std::to_string(seed),
+                    {"bodies.body.start.seed=" + std::to_string(seed)});
+}
+
+TEST(Quasistatic, FindsTheRestShapeOfAFlatAndOfAnInsideOutBall) {
+  for (const std::string kind : {"flatten_plane", "flatten_line", "inside_out"})
+    expect_recovery(kind, {"bodies.body.start={kind: " + kind + ", axis: [0.3, 1, -0.2]}"});
+}
+
+TEST(Quasistatic, FindsTheRestShapeOfScrambledSharedMeshes) {
+  const char* folder = std::getenv("EVERT_SHARED_MESHES");
+  const auto file = std::filesystem::path(folder == nullptr ? "" : folder) / "ball404.msh";
+  if (folder == nullptr || !std::filesystem::exists(file))
+    GTEST_SKIP() << "no ball404.msh in EVERT_SHARED_MESHES";
+  expect_recovery("scrambled ball404", {"bodies.body.mesh={file: " + file.string() + "}"});
+}
+
+}  // namespace
+}  // namespace evert
