@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/scenes.hpp"
+#include "tests/support/verify.hpp"
 #include <cmath>
 #include <numbers>
 
@@ -56,6 +57,9 @@ TEST(Friction, SlidesWithCoulombsAcceleration) {
     const double acceleration = (mean_velocity_along_slope(simulation) - before) / (end - begin);
     const double expected = 9.81 * (std::sin(angle) - friction * std::cos(angle));
     EXPECT_NEAR(acceleration / expected, 1, 0.01) << degrees << " degrees";
+    test::verify("friction: acceleration on a slope of " + std::to_string(std::lround(degrees)) +
+                     " degrees over Coulomb's",
+                 "1", acceleration / expected, "0.99 to 1.01");
   }
 }
 
@@ -68,7 +72,11 @@ TEST(Friction, SticksBelowTheCoulombAngle) {
     const auto settled = test::gathered(simulation.mesh(), simulation.positions());
     run_until(simulation, 3.0);
     const auto later = test::gathered(simulation.mesh(), simulation.positions());
-    EXPECT_LE(test::largest_difference(settled, later), 1e-6) << "damping " << damping_time << " s";
+    const double crept = test::largest_difference(settled, later);
+    EXPECT_LE(crept, 1e-6) << "damping " << damping_time << " s";
+    test::verify("friction: creep below the angle of friction in 2 s [m], damping time " +
+                     std::to_string(damping_time) + " s",
+                 "0", crept, "<= 1e-6");
   }
 }
 
@@ -80,7 +88,9 @@ TEST(Friction, ImpulsesBalanceTheMomentum) {
   const auto now = simulation.measure();
   const auto gained = now.momentum - start.momentum;
   const auto received = now.gravity_impulse + now.contact_impulse + now.constraint_impulse;
-  EXPECT_LE(norm(gained - received), 1e-8 * norm(now.gravity_impulse));
+  const double unbalanced = norm(gained - received) / norm(now.gravity_impulse);
+  EXPECT_LE(unbalanced, 1e-8);
+  test::verify("friction: momentum less impulses, over the impulse of gravity", "0", unbalanced, "<= 1e-8");
 }
 
 TEST(Bounce, LosesHeightEveryTimeAndNeverGainsEnergy) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/petsc_options.hpp"
 #include "tests/support/quadrature.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
@@ -210,6 +211,7 @@ void expect_orders(const char* kind, const Expected& expected, Solve&& solve) {
 class StaticOrder : public testing::TestWithParam<Expected> {};
 
 TEST_P(StaticOrder, IsThatOfTheory) {
+  const auto solver = test::quasistatic_solver();
   expect_orders("static", GetParam(), [&](int n) { return static_errors(GetParam().element, n); });
 }
 

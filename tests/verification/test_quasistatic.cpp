@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/petsc_options.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <initializer_list>
 #include <unistd.h>
 
 namespace evert {
@@ -33,23 +33,9 @@ constraints:
 integrator: {method: quasistatic}
 )";
 
-/// PETSc options for the life of the object, on all ranks.
-class Options {
- public:
-  using Option = std::pair<std::string, std::string>;
-  Options(std::initializer_list<Option> options) : options_(options) {
-    for (const auto& [name, value] : options_)
-      check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
-  }
-  ~Options() {
-    for (const auto& [name, value] : options_)
-      static_cast<void>(PetscOptionsClearValue(nullptr, name.c_str()));
-  }
-  Options(const Options&) = delete;
-  Options& operator=(const Options&) = delete;
-
- private:
-  std::vector<Option> options_;
+class QuasistaticSolve : public testing::Test {
+ protected:
+  test::Options solver_ = test::quasistatic_solver();
 };
 
 /// The norms of the residuals that SNES writes with its monitor.
@@ -65,14 +51,14 @@ std::vector<double> residuals_of(const std::string& file) {
 
 // r_{k+1} = C r_k²: the logarithm of the residual doubles. Two steps in a row must show it before rounding
 // ends it, with exact linear solves; the tangent is the full one there (adaptive).
-TEST(Quasistatic, ConvergesQuadraticallyNearRest) {
+TEST_F(QuasistaticSolve, ConvergesQuadraticallyNearRest) {
   const auto file =
       std::filesystem::temp_directory_path() / ("evert_snes_" + std::to_string(getppid()) + ".log");
   std::vector<double> norms;
   {
-    const Options options{{"-quasistatic_snes_monitor", "ascii:" + file.string()},
-                          {"-quasistatic_ksp_rtol", "1e-12"},
-                          {"-quasistatic_snes_rtol", "1e-12"}};
+    const test::Options options{{"-quasistatic_snes_monitor", "ascii:" + file.string()},
+                                {"-quasistatic_ksp_rtol", "1e-12"},
+                                {"-quasistatic_snes_rtol", "1e-12"}};
     auto scene = test::build(bar);
     scene.simulation->step_to(1);
   }
@@ -94,8 +80,8 @@ TEST(Quasistatic, ConvergesQuadraticallyNearRest) {
   EXPECT_GE(best, 1.8);
 }
 
-TEST(Quasistatic, AgreesWithTheDampedMotion) {
-  const Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+TEST_F(QuasistaticSolve, AgreesWithTheDampedMotion) {
+  const test::Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
   auto still = test::build(bar);
   still.simulation->step_to(1);
   auto moving = test::build(bar, {"integrator.method=newmark", "end_time=100"});
@@ -114,8 +100,8 @@ TEST(Quasistatic, AgreesWithTheDampedMotion) {
   EXPECT_EQ(still.simulation->measure().kinetic_energy, 0);
 }
 
-TEST(Quasistatic, IsTheSameOnAnyNumberOfRanks) {
-  const Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+TEST_F(QuasistaticSolve, IsTheSameOnAnyNumberOfRanks) {
+  const test::Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
   auto alone = test::build(bar, {}, PETSC_COMM_SELF);
   alone.simulation->step_to(1);
   auto together = test::build(bar);
@@ -126,8 +112,8 @@ TEST(Quasistatic, IsTheSameOnAnyNumberOfRanks) {
       1e-8);
 }
 
-TEST(Quasistatic, HeldNodesCarryTheWeight) {
-  const Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+TEST_F(QuasistaticSolve, HeldNodesCarryTheWeight) {
+  const test::Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
   auto scene = test::build(bar);
   scene.simulation->step_to(1);
   const auto now = scene.simulation->measure();
@@ -162,18 +148,18 @@ void expect_recovery(const std::string& name, const std::vector<std::string>& ov
                "0, nothing inverted", error, "< 1e-6");
 }
 
-TEST(Quasistatic, FindsTheRestShapeOfAScrambledBall) {
+TEST_F(QuasistaticSolve, FindsTheRestShapeOfAScrambledBall) {
   for (int seed = 1; seed <= 3; ++seed)
     expect_recovery("scrambled ball, seed " + std::to_string(seed),
                     {"bodies.body.start.seed=" + std::to_string(seed)});
 }
 
-TEST(Quasistatic, FindsTheRestShapeOfAFlatAndOfAnInsideOutBall) {
+TEST_F(QuasistaticSolve, FindsTheRestShapeOfAFlatAndOfAnInsideOutBall) {
   for (const std::string kind : {"flatten_plane", "flatten_line", "inside_out"})
     expect_recovery(kind, {"bodies.body.start={kind: " + kind + ", axis: [0.3, 1, -0.2]}"});
 }
 
-TEST(Quasistatic, FindsTheRestShapeOfScrambledSharedMeshes) {
+TEST_F(QuasistaticSolve, FindsTheRestShapeOfScrambledSharedMeshes) {
   const char* folder = std::getenv("EVERT_SHARED_MESHES");
   const auto file = std::filesystem::path(folder == nullptr ? "" : folder) / "ball404.msh";
   if (folder == nullptr || !std::filesystem::exists(file))

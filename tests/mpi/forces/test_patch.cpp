@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/verify.hpp"
 #include <algorithm>
 #include <functional>
 #include <random>
@@ -93,6 +94,7 @@ class Patch : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(Patch, AUniformDeformationIsInBalance) {
+  double unbalanced = 0, stress_error = 0;
   for (const Material& material : models) {
     const ElasticProperties properties{1000, material, {}};
     ElasticForces elastic(mesh_, std::span(&properties, 1));
@@ -114,6 +116,7 @@ TEST_P(Patch, AUniformDeformationIsInBalance) {
         const auto force = node_value(f_.owned(), i);
         if (!on_surface(i)) {
           EXPECT_LE(norm(force), 1e-12 * scale) << "node " << i;
+          unbalanced = std::max(unbalanced, norm(force) / scale);
           ++inside;
         }
         virial -= outer(force, mesh_.rest_positions[static_cast<std::size_t>(i)]);
@@ -122,8 +125,12 @@ TEST_P(Patch, AUniformDeformationIsInBalance) {
       MPI_Allreduce(MPI_IN_PLACE, &inside, 1, MPI_INT, MPI_SUM, mesh_.comm);
       EXPECT_GE(inside, 3 * 2 * 2) << "the nodes of the lattice that are inside";
       EXPECT_LE(norm(virial - volume * p), 1e-12 * volume * norm(p));
+      stress_error = std::max(stress_error, norm(virial - volume * p) / (volume * norm(p)));
     }
   }
+  test::verify("patch test, " + GetParam() + ": force left inside, over stress on a face", "0", unbalanced,
+               "<= 1e-12");
+  test::verify("patch test, " + GetParam() + ": relative error of the stress", "0", stress_error, "<= 1e-12");
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, Patch, testing::Values("tet4", "hex8", "wedge6", "tet10", "mixed"),
