@@ -113,23 +113,30 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
 }
 
 void BatchedBlock::stiffness_matrices(const double* x, TangentForm form, const TakeCellMatrix& take) const {
-  const auto all_cells = [&]<int nodes, int points>(const ReferenceElement<nodes, points>& element,
-                                                    const auto& model) {
-    std::array<double, std::size_t{9} * nodes * nodes> matrix;
+  const std::size_t nodes = element_block_.element.nodes(), points = element_block_.element.points();
+  std::vector<double> matrix(9 * nodes * nodes);
+  const auto all_cells = [&](const auto& model) {
     for (LocalIndex cell = 0; cell < cells(); ++cell) {
       const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);
-      const auto at_nodes = nodal_values<nodes>(x, cell_nodes(cell));
-      matrix.fill(0);
-      for (std::size_t q = 0; q < points; ++q)
-        add_stiffness<nodes>(rest_point(element, element_block_, slot, q), at_nodes, model, form, matrix);
+      const NodeVectors at_nodes = nodal_values(x, cell_nodes(cell));
+      std::fill(matrix.begin(), matrix.end(), 0.0);
+      for (std::size_t q = 0; q < points; ++q) {
+        add_stiffness(rest_point(element_block_, slot, q), nodes, at_nodes, fibre_at(slot, q), model, form,
+                      matrix);
+      }
       take(cell, matrix);
     }
   };
-  std::visit(
-      [&](const auto& model) {
-        with_reference_element(element_block_.type, [&](const auto& element) { all_cells(element, model); });
-      },
-      material_);
+  std::visit(all_cells, material_);
+}
+
+/// As the cell in lane number `slot` is turned; none where the material has no fibres.
+Vec3d BatchedBlock::fibre_at(std::size_t slot, std::size_t q) const {
+  if (element_block_.fibres.size() == 0) return {0, 0, 0};
+  constexpr ShapeLayout one_vector{.vectors = 1};
+  const std::size_t points = element_block_.element.points();
+  return LaneNumbers(element_block_.fibres, 3 * points, static_cast<std::size_t>(element_block_.lanes), slot)
+      .vector(one_vector, q, 0);
 }
 
 CellNodes BatchedBlock::cell_nodes(LocalIndex cell) const {

@@ -41,6 +41,7 @@ class BatchedBlock final : public ElasticBlock {
 
  private:
   void point_kernels_at_memory();
+  [[nodiscard]] Vec3d fibre_at(std::size_t slot, std::size_t q) const;
   [[nodiscard]] BatchRange all() const { return {0, element_block_.batches()}; }
 
   ElementBlock element_block_;

@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/elements/reference_element.hpp"
 #include "evert/elements/rest_shape.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
 
