@@ -22,12 +22,7 @@ function(add_cpu_level_objects name)
       # g++ 12 takes the deliberately undefined operands of its own AVX-512 intrinsics for mistakes.
       target_compile_options(${target} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)
     endif()
-    if(EVERT_SANITIZE)
-      # These checks watch every temporary of every pack: with them a kernel takes five minutes to compile, without
-      # them ten seconds. Bounds, overflow and the heap stay watched.
-      target_compile_options(${target} PRIVATE
-        -fno-sanitize-address-use-after-scope -fno-sanitize=null,alignment,object-size)
-    endif()
+    target_compile_options(${target} PRIVATE ${EVERT_KERNEL_SANITIZERS})
     target_link_libraries(${target} PRIVATE ${ARG_LINK})
     list(APPEND objects $<TARGET_OBJECTS:${target}>)
   endforeach()
