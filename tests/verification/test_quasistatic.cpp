@@ -146,7 +146,7 @@ bool recovers(const std::string& name, const std::vector<std::string>& overrides
   simulation.step_to(1);  // throws where it finds no rest
   const double error = distance();
   const bool back = error < 1e-6 && simulation.inverted_points() == 0;
-  EXPECT_TRUE(back || error > 0.01) << name << ": " << error << " m";
+  EXPECT_TRUE(back || error > 1e-3) << name << ": " << error << " m";
   return back;
 }
 
