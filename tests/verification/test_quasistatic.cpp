@@ -191,13 +191,13 @@ TEST_F(QuasistaticSolve, FindsTheRestShapeOfAScrambledSharedMesh) {
   if (folder == nullptr || !std::filesystem::exists(file))
     GTEST_SKIP() << "no ball404.msh in EVERT_SHARED_MESHES";
   int recovered = 0;
-  for (int seed = 1; seed <= 5; ++seed)
+  for (int seed = 1; seed <= 20; ++seed)
     recovered += recovers("scrambled ball404", {"bodies.body.mesh={file: " + file.string() + "}",
                                                 "bodies.body.start.seed=" + std::to_string(seed)})
                      ? 1
                      : 0;
-  test::verify("quasistatic: of 5 scrambled ball404 back at the rest shape", "5", recovered, ">= 3");
-  EXPECT_GE(recovered, 3);
+  test::verify("quasistatic: of 20 scrambled ball404 back at the rest shape", "20", recovered, ">= 10");
+  EXPECT_GE(recovered, 10);
 }
 
 }  // namespace
