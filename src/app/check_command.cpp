@@ -2,6 +2,7 @@
 
 #include "evert/app/command_line.hpp"
 #include "evert/app/observer.hpp"
+#include "evert/core/formatted.hpp"
 #include "evert/core/petsc.hpp"
 #include "evert/scene/build.hpp"
 #include "evert/scene/load.hpp"
@@ -19,14 +20,6 @@
 
 namespace evert {
 namespace {
-
-/// printf for strings: the report is a table of numbers.
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 256> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, values...);
-  return buffer.data();
-}
 
 std::string vector_text(const Vec3d& v) { return formatted("(%g, %g, %g)", v[0], v[1], v[2]); }
 
@@ -178,9 +171,20 @@ std::vector<Stretch> time_steps(Simulation& simulation, SceneConfig scene) {
   for (const auto& event : scene.events) {
     if (event.at >= scene.end_time) continue;
     apply_event(scene, event);
-    if (event.target != EventTarget::gravity && event.target != EventTarget::friction)
+    if (event.target == EventTarget::material || event.target == EventTarget::damping)
       set_regions(simulation, scene.bodies[event.owner]);
     out.push_back({event.at, std::min(simulation.suggested_time_step(), scene.end_time)});
+  }
+  const auto cut = [&](const std::optional<ActivationConfig>& keys) {
+    for (const auto& key : keys.value_or(ActivationConfig{})) {
+      if (!(key.time > 0 && key.time < scene.end_time)) continue;
+      const auto later = std::ranges::upper_bound(out, key.time, {}, &Stretch::begin);
+      out.insert(later, {key.time, (later - 1)->dt});
+    }
+  };
+  for (const auto& body : scene.bodies) {
+    cut(body.activation);
+    for (const auto& group : body.groups) cut(group.activation);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include "evert/app/command_line.hpp"
 #include "evert/core/error.hpp"
+#include "evert/core/formatted.hpp"
 #include "evert/io/files.hpp"
 #include "evert/scene/material.hpp"
 
@@ -53,13 +54,6 @@ Examples:
   evert material st_venant_kirchhoff -youngs_modulus 1e5 -poissons_ratio 0.45 -gradients f.txt -o p.csv
 )";
 
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
-
 /// The keys that a scene gives a material, but for the model.
 std::vector<std::string> material_keys() {
   std::vector<std::string> keys;
@@ -84,6 +78,7 @@ std::string usage_of_material() {
   return text + examples;
 }
 
+/// Of a name that may be no model at all.
 bool has_fibres(const std::string& model) {
   return model == name_of(MaterialModel::muscle) || model == name_of(MaterialModel::tendon);
 }
@@ -135,7 +130,8 @@ Range range_from(const CommandOptions& options) {
   Range range;
   if (options.has("from")) range.from = options.number("from");
   if (options.has("to")) range.to = options.number("to");
-  if (!(range.from < range.to))
+  const double resolved = 1e-9 * std::max(std::abs(range.from), std::abs(range.to));
+  if (!(range.to - range.from > resolved))
     throw UserError("evert material: -from must be less than -to: from " + formatted("%g", range.from) +
                     " to " + formatted("%g", range.to));
   return range;

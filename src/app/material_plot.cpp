@@ -1,5 +1,7 @@
 #include "material_plot.hpp"
 
+#include "evert/core/formatted.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,13 +10,6 @@
 
 namespace evert {
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 constexpr std::array colours{"#2d6ca8", "#c8362b", "#3f8f5b", "#8a5fb0", "#c78a1e"};
 constexpr int points = 200;

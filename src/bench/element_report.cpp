@@ -1,4 +1,5 @@
 #include "evert/bench/elements.hpp"
+#include "evert/core/formatted.hpp"
 #include "evert/io/json_text.hpp"
 
 #include <algorithm>
@@ -8,13 +9,6 @@
 
 namespace evert::bench {
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 320> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 constexpr std::array colours{"#2d6ca8", "#c8362b", "#e08a1e", "#3f8f5b", "#8a5fb0", "#20242a"};
 constexpr double width = 640, height = 420, left = 64, right = 100, top = 16, bottom = 48;

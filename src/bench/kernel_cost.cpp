@@ -81,37 +81,34 @@ struct CountedCell {
 constexpr NeoHookean neo_hookean{.lame = {1, 1}};
 
 template <const auto& element>
-CountedCell<element> cell_of_library(DampingModel damping) {
-  return {neo_hookean, damping, kernels::kernels_of<Counted, element, NeoHookean>(damping)};
-}
-
-template <const auto& element>
 KernelCost force_cost_of(CountedCell<element> cell) {
   return cell.per_point(cost_of([&] { cell.update(); }));
 }
 
-}  // namespace
-
-KernelCost force_cost(CellType type, DampingModel damping) {
+/// What `visit` says of the element of a type.
+template <class Visit>
+KernelCost with_element(CellType type, Visit&& visit) {
   switch (type) {
     case CellType::tet4:
-      return force_cost_of(cell_of_library<tet4>(damping));
+      return visit.template operator()<tet4>();
     case CellType::hex8:
-      return force_cost_of(cell_of_library<hex8>(damping));
+      return visit.template operator()<hex8>();
     case CellType::wedge6:
-      return force_cost_of(cell_of_library<wedge6>(damping));
+      return visit.template operator()<wedge6>();
     case CellType::tet10:
-      return force_cost_of(cell_of_library<tet10>(damping));
+      return visit.template operator()<tet10>();
   }
   return {};
 }
 
-KernelCost force_cost(CellType type, const Material& material) {
-  const auto cost = [&]<const auto & element>() {
-    const auto kernels = kernels::kernels_of<Counted, element>(material, DampingModel::none);
-    return force_cost_of(CountedCell<element>(material, DampingModel::none, kernels));
-  };
-  return type == CellType::hex8 ? cost.template operator()<hex8>() : cost.template operator()<tet4>();
+}  // namespace
+
+KernelCost force_cost(CellType type, const Material& material, DampingModel damping) {
+  return with_element(
+      type, [&]<const auto & element>() {
+        const auto kernels = kernels::kernels_of<Counted, element>(material, damping);
+        return force_cost_of(CountedCell<element>(material, damping, kernels));
+      });
 }
 
 KernelCost general_path_cost() {
@@ -119,11 +116,15 @@ KernelCost general_path_cost() {
       CountedCell<hex8_by_gradients>(neo_hookean, DampingModel::none, general_hex_kernels<Counted>()));
 }
 
-KernelCost damping_cost() {
-  auto cell = cell_of_library<tet4>(DampingModel::rotated);
-  cell.update();
-  return cell.per_point(
-      cost_of([&] { cell.block->add_damping(cell.x.data(), cell.f.data(), 1, cell.block->interior()); }));
+KernelCost damping_cost(CellType type, DampingModel damping) {
+  return with_element(
+      type, [&]<const auto & element>() {
+        CountedCell<element> cell(neo_hookean, damping,
+                                  kernels::kernels_of<Counted, element, NeoHookean>(damping));
+        cell.update();
+        return cell.per_point(cost_of(
+            [&] { cell.block->add_damping(cell.x.data(), cell.f.data(), 1, cell.block->interior()); }));
+      });
 }
 
 KernelCost svd_cost() {

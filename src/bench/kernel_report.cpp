@@ -1,6 +1,7 @@
 #include "evert/bench/kernel_report.hpp"
 
 #include "evert/core/collective.hpp"
+#include "evert/core/formatted.hpp"
 #include "evert/forces/kernels/cpu_level.hpp"
 #include "evert/io/json_text.hpp"
 
@@ -13,13 +14,6 @@
 
 namespace evert::bench {
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 std::string machine_model() {
   std::ifstream file("/proc/cpuinfo");

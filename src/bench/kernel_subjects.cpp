@@ -51,6 +51,8 @@ std::size_t parts_of(const DistributedMesh& mesh) {
 
 }  // namespace
 
+Material bench_material() { return material; }
+
 std::vector<Material> other_materials() {
   const Lame& lame = material.lame;
   std::vector<Material> all{RotatedLinear{.lame = lame}, StVenantKirchhoff{.lame = lame},

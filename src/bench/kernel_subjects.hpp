@@ -41,6 +41,8 @@ struct MaterialForces {
   Material material;
   ElasticForces elastic;
 };
+/// That of specimens.
+[[nodiscard]] Material bench_material();
 /// Whatever else there is, each by default; muscle at half activation.
 [[nodiscard]] std::vector<Material> other_materials();
 [[nodiscard]] std::vector<Material> materials_with_fibres();

@@ -45,7 +45,7 @@ void add_other_materials(std::vector<Kernel>& kernels, CellType type, Subject& s
 
 /// The force of one element.
 Kernel force_kernel(const std::string& key, CellType type, ElementSubject& cells) {
-  const auto cost = with_nodes(force_cost(type, DampingModel::none), cells.nodes_per_point());
+  const auto cost = with_nodes(force_cost(type, bench_material()), cells.nodes_per_point());
   const Workload force{cells.points(), [&] { cells.force(); }};
   return {key, std::string(name_of(type)) + " force", "Mpoint/s", force, Yardstick::naive, cost};
 }
@@ -53,20 +53,20 @@ Kernel force_kernel(const std::string& key, CellType type, ElementSubject& cells
 std::vector<Kernel> kernels_of(TetSubject& tets, HexSubject& hexes, ElementSubject& wedges,
                                ElementSubject& quadratic) {
   const double nodes = tets.nodes_per_cell();
-  const auto damping = with_nodes(damping_cost(), nodes);
+  const auto damping = with_nodes(damping_cost(CellType::tet4, DampingModel::rotated), nodes);
   return {
       {"tet_force_mps",
        "tet4 force",
        "Mtet/s",
        {tets.cells(), [&] { tets.force(); }},
        Yardstick::naive,
-       with_nodes(force_cost(CellType::tet4, DampingModel::none), nodes)},
+       with_nodes(force_cost(CellType::tet4, bench_material()), nodes)},
       {"tet_force_damped_mps",
        "tet4 force, keeps damping",
        "Mtet/s",
        {tets.cells(), [&] { tets.damped_force(); }},
        Yardstick::naive,
-       with_nodes(force_cost(CellType::tet4, DampingModel::rotated), nodes)},
+       with_nodes(force_cost(CellType::tet4, bench_material(), DampingModel::rotated), nodes)},
       force_kernel("hex_force_mqps", CellType::hex8, hexes),
       force_kernel("wedge6_force_mqps", CellType::wedge6, wedges),
       force_kernel("tet10_force_mqps", CellType::tet10, quadratic),

@@ -2,6 +2,7 @@
 
 #include "evert/bench/sampling.hpp"
 #include "evert/core/collective.hpp"
+#include "evert/core/formatted.hpp"
 
 #include "kernel_subjects.hpp"
 #include <algorithm>
@@ -24,34 +25,27 @@ double sum_over_ranks(MPI_Comm comm, double value) {
   return value;
 }
 
-/// What one call of a phase takes on this rank; nothing where it is not counted.
+/// What one call of a phase takes on this rank, in full precision; nothing where it is not counted.
 KernelCost cost_of_call(Phase phase, const Simulation& simulation) {
   KernelCost cost;
   if (phase != Phase::force && phase != Phase::damping_apply) return cost;
-  const auto& mesh = simulation.mesh();
-  const auto& blocks = simulation.elastic().blocks();
-  const bool damped = std::ranges::any_of(
-      blocks, [](const auto& block) { return block != nullptr && block->damped(); });  // not by mass alone
-  const auto model = damped ? DampingModel::rotated : DampingModel::none;
-  const auto add = [&](const KernelCost& of_item, double items) {
-    cost.flops += of_item.flops * items;
-    cost.divisions += of_item.divisions * items;
-    cost.bytes += of_item.bytes * items;
-  };
-  for (const auto& cells : mesh.cells) {
-    const auto points = static_cast<double>(cells.size()) * quadrature_points(cells.type);
-    if (phase == Phase::force) add(force_cost(cells.type, model), points);
-    if (phase == Phase::damping_apply && damped && cells.type == CellType::tet4) add(damping_cost(), points);
+  for (const auto& block : simulation.elastic().blocks()) {
+    if (block == nullptr || (phase == Phase::damping_apply && !block->damped())) continue;
+    const KernelCost of_point = phase == Phase::force
+                                    ? force_cost(block->type(), block->material(), block->damping().model)
+                                    : damping_cost(block->type(), block->damping().model);
+    const double points = static_cast<double>(block->cells()) * quadrature_points(block->type());
+    cost.flops += of_point.flops * points;
+    cost.divisions += of_point.divisions * points;
+    cost.bytes += of_point.bytes * points;
   }
-  cost.bytes += nodal_bytes * static_cast<double>(mesh.local_nodes());
+  cost.bytes += nodal_bytes * static_cast<double>(simulation.mesh().local_nodes());
   return cost;
 }
 
 template <class... Values>
 void put(std::ostream& out, const char* format, Values... values) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  out << text.data();
+  out << formatted(format, values...);
 }
 
 void print_rate(double work, double seconds, double ceiling, std::ostream& out) {

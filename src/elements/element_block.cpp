@@ -56,7 +56,7 @@ class LaneWriter {
                         std::span<const Vec3d> rest_positions) {
     for (std::size_t q = 0; q < element_.points(); ++q) {
       const Mat3d jacobian = rest_jacobian(element_, q, cell, rest_positions);
-      block_.volumes.set(at(slot, element_.points(), q), element_.weight(q) * determinant(jacobian));
+      block_.volumes.set(at(slot, element_.points(), q), point_volume(element_, q, jacobian));
       const RestVectors vectors(element_, block_.shape_data, q, jacobian);
       const Mat3d frame = vectors.frame();
       for (std::size_t j = 0; j < layout_.vectors; ++j)

@@ -114,7 +114,8 @@ void BatchedBlock::damping_matrix(LocalIndex cell, std::span<double> matrix) con
 
 void BatchedBlock::stiffness_matrices(const double* x, TangentForm form, const TakeCellMatrix& take) const {
   const std::size_t nodes = element_block_.element.nodes(), points = element_block_.element.points();
-  std::vector<double> matrix(9 * nodes * nodes);
+  std::array<double, 9 * most_nodes * most_nodes> of_cell;
+  const std::span<double> matrix(of_cell.data(), 9 * nodes * nodes);
   const auto all_cells = [&](const auto& model) {
     for (LocalIndex cell = 0; cell < cells(); ++cell) {
       const auto slot = static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)]);

@@ -21,6 +21,9 @@ class BatchedBlock final : public ElasticBlock {
   [[nodiscard]] BatchRange interior() const override { return element_block_.interior; }
   [[nodiscard]] BatchRange boundary() const override { return element_block_.boundary; }
   void update(const double* x, double* f, BatchRange batches) override;
+  [[nodiscard]] CellType type() const override { return element_block_.element.type(); }
+  [[nodiscard]] const Material& material() const override { return material_; }
+  [[nodiscard]] const Damping& damping() const override { return damping_; }
   [[nodiscard]] bool damped() const override { return kernels_.add_damping != nullptr; }
   void add_damping(const double* v, double* out, double factor, BatchRange batches) const override;
   void add_damping_diagonal(double* normal, double* shear, double factor) const override;

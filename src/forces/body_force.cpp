@@ -12,7 +12,7 @@ void add_cell(const ElementView& element, std::span<const LocalIndex> cell, std:
     Vec3d position{};
     for (std::size_t a = 0; a < cell.size(); ++a)
       position += element.value(q, a) * rest[static_cast<std::size_t>(cell[a])];
-    const double volume = element.weight(q) * determinant(rest_jacobian(element, q, cell, rest));
+    const double volume = point_volume(element, q, rest_jacobian(element, q, cell, rest));
     const Vec3d at_point = volume * force(position, time);
     for (std::size_t a = 0; a < cell.size(); ++a)
       for (std::size_t k = 0; k < 3; ++k)

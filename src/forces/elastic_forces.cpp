@@ -108,8 +108,12 @@ void ElasticForces::update(NodeField& x, NodeField& f) {
 void ElasticForces::add_damping(NodeField& v, NodeField& out, double factor) const {
   const PhaseScope scope(Phase::damping_apply, damping_flops * points_of(mesh_));
   clear(out.local().subspan(out.owned().size()));
-  for (std::size_t i = 0; i < 3 * mass_damping_.size(); ++i)
-    out.owned()[i] += factor * mass_damping_[i / 3] * v.owned()[i];
+  const auto velocity = v.owned();
+  const auto sum = out.owned();
+  for (std::size_t node = 0; node < mass_damping_.size(); ++node) {
+    const double of_node = factor * mass_damping_[node];
+    for (std::size_t i = 3 * node; i < 3 * node + 3; ++i) sum[i] += of_node * velocity[i];
+  }
   overlapped(halo_, blocks_, v, out, [&](const ElasticBlock& block, BatchRange batches) {
     if (block.damped()) block.add_damping(v.local().data(), out.local().data(), factor, batches);
   });

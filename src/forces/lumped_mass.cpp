@@ -12,7 +12,7 @@ void add_lumped_mass(const ElementView& element, const ElasticCells& cells,
     const auto cell = cells.nodes.subspan(first, element.nodes());
     std::array<double, most_points> volumes{};
     for (std::size_t q = 0; q < element.points(); ++q)
-      volumes[q] = element.weight(q) * determinant(rest_jacobian(element, q, cell, rest_positions));
+      volumes[q] = point_volume(element, q, rest_jacobian(element, q, cell, rest_positions));
     const auto shares = lumped_volumes(element, volumes);
     for (std::size_t a = 0; a < cell.size(); ++a)
       mass[static_cast<std::size_t>(cell[a])] += cells.density * shares[a];

@@ -2,11 +2,11 @@
 #include "evert/forces/elastic_block.hpp"
 #include "evert/materials/fibres.hpp"
 #include "evert/materials/tangent.hpp"
-#include "evert/math/nodal.hpp"
 #include "evert/math/svd3.hpp"
 
 #include "rest_point.hpp"
 #include <algorithm>
+#include <array>
 #include <span>
 
 /// The stiffness matrix of a cell, point by point, for implicit solvers.
@@ -39,39 +39,25 @@ inline Mat3d between_gradients(const PrincipalTangent<double>& tangent, const Ve
   return block;
 }
 
-/// How a point of a cell is deformed.
-struct PointState {
-  Mat3d deformation_gradient;
-  Svd3<double> svd;
-  Vec3d fibre;  ///< direction at rest, turned as the cell is; of models with fibres
-};
-
-/// ∂P/∂F of one point between two of its shape gradients: rows and columns are components of nodes.
+/// ∂P/∂F of one point between any two of its shape gradients: rows and columns are components of nodes.
 template <class Model>
 class PointTangent {
  public:
-  PointTangent(const Model& model, const PointState& state, TangentForm form)
-      : state_(state), tangent_(matrix_tangent(model, state.svd.sigma)) {
+  /// `fibre`: the direction at rest, turned as the cell is; of models with fibres.
+  PointTangent(const Model& model, const Mat3d& deformation_gradient, const Vec3d& fibre,
+               std::span<const Vec3d> gradients, TangentForm form)
+      : svd_(svd3(deformation_gradient)), tangent_(matrix_tangent(model, svd_.sigma)) {
     if (form == TangentForm::projected) tangent_ = positive_part(tangent_);
+    for (std::size_t a = 0; a < gradients.size(); ++a) turned_[a] = transpose_times(svd_.v, gradients[a]);
     if constexpr (HasFibres<Model>) {
-      now_ = state.deformation_gradient * state.fibre;
-      const double stretch = std::max(norm(now_), 1e-30);
-      now_ = (1 / stretch) * now_;
-      across_ = model.fibre_tension(stretch) / stretch;
-      along_ = model.fibre_stiffness(stretch);
-      if (form == TangentForm::projected) along_ = std::max(along_, 0.0);
+      for (std::size_t a = 0; a < gradients.size(); ++a) along_fibre_[a] = dot(fibre, gradients[a]);
+      of_fibre_ = fibre_tangent(model, deformation_gradient * fibre, form);
     }
   }
 
-  [[nodiscard]] Mat3d between(const Vec3d& a, const Vec3d& b) const {
-    const Svd3<double>& svd = state_.svd;
-    const Mat3d in_frame = between_gradients(tangent_, transpose_times(svd.v, a), transpose_times(svd.v, b));
-    Mat3d block = svd.u * times_transpose(in_frame, svd.u);
-    if constexpr (HasFibres<Model>) {
-      // Of (T/Λ) F a aᵀ: T' along the fibre, T/Λ across.
-      const double share = dot(state_.fibre, a) * dot(state_.fibre, b);
-      block += share * (across_ * identity<double>() + (along_ - across_) * outer(now_, now_));
-    }
+  [[nodiscard]] Mat3d between(std::size_t a, std::size_t b) const {
+    Mat3d block = svd_.u * times_transpose(between_gradients(tangent_, turned_[a], turned_[b]), svd_.u);
+    if constexpr (HasFibres<Model>) block += (along_fibre_[a] * along_fibre_[b]) * of_fibre_;
     return block;
   }
 
@@ -83,10 +69,21 @@ class PointTangent {
       return principal_tangent(model, sigma);
   }
 
-  const PointState& state_;
+  /// Of (T/Λ) F a aᵀ with respect to `now` = F a: T' along the fibre, T/Λ across.
+  static Mat3d fibre_tangent(const Model& model, const Vec3d& now, TangentForm form) {
+    const double stretch = std::max(norm(now), 1e-30);
+    const Vec3d direction = (1 / stretch) * now;
+    const double across = fibre_pull(model, stretch);
+    double along = model.fibre_stiffness(stretch);
+    if (form == TangentForm::projected) along = std::max(along, 0.0);
+    return across * identity<double>() + (along - across) * outer(direction, direction);
+  }
+
+  Svd3<double> svd_;
   PrincipalTangent<double> tangent_;
-  Vec3d now_{};  // the direction of the fibre
-  double along_ = 0, across_ = 0;
+  NodeVectors turned_{};                          // Vᵀ ∂N_a/∂X
+  std::array<double, most_nodes> along_fibre_{};  // a · ∂N_a/∂X
+  Mat3d of_fibre_{};
 };
 
 /// Adds |∂X/∂ξ| W ∂P/∂F of one point, between the shape gradients of all `nodes` at `x`, to the cell's
@@ -96,11 +93,10 @@ void add_stiffness(const RestPoint& point, std::size_t nodes, const NodeVectors&
                    const Model& model, TangentForm form, std::span<double> matrix) {
   Mat3d f{};
   for (std::size_t a = 1; a < nodes; ++a) f += outer(x[a] - x[0], point.gradients[a]);
-  const PointState state{f, svd3(f), fibre};
-  const PointTangent<Model> tangent(model, state, form);
+  const PointTangent<Model> tangent(model, f, fibre, std::span(point.gradients).first(nodes), form);
   for (std::size_t a = 0; a < nodes; ++a)
     for (std::size_t b = a; b < nodes; ++b) {
-      const Mat3d block = point.volume * tangent.between(point.gradients[a], point.gradients[b]);
+      const Mat3d block = point.volume * tangent.between(a, b);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
           matrix[(3 * a + i) * 3 * nodes + 3 * b + k] += block(i, k);

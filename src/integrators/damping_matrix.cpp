@@ -11,6 +11,7 @@ AssembledDamping::AssembledDamping(const DampingOperator& damping, const char* t
     : damping_(damping), matrix_(damping.mesh(), damping.elastic(), type, [](const ElasticBlock& block) {
         return block.damped();
       }) {
+  matrix_.declare_positive_definite(true);
   for (int column = 0; column < 3; ++column) projectors_.emplace_back(damping.mesh());
 }
 

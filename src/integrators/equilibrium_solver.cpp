@@ -90,7 +90,8 @@ EquilibriumSolver::EquilibriumSolver(const System& system, TangentChoice choice)
       stiffness_(system.mesh, system.elastic, quasistatic_matrix_type(system.mesh.comm).c_str()),
       trial_(system.mesh),
       force_(system.mesh),
-      load_(system.mesh) {
+      load_(system.mesh),
+      pull_(system.mesh) {
   const auto comm = system.mesh.comm;
   double mass = 0, squares = 0;
   for (const double m : system.masses()) {
@@ -101,18 +102,19 @@ EquilibriumSolver::EquilibriumSolver(const System& system, TangentChoice choice)
   mass_norm_ = std::sqrt(sum_over_ranks(comm, squares));
   length_ = gyration_radius(system, total_mass_);
   check(MatCreateVecs(stiffness_.mat(), x_.out(), nullptr));
-  for (auto* vec : {&base_, &base_residual_, &work_}) check(VecDuplicate(x_.get(), vec->out()));
+  for (auto* vec : {&function_, &base_, &base_residual_, &work_, &slope_, &right_, &change_})
+    check(VecDuplicate(x_.get(), vec->out()));
 
   const auto type = quasistatic_matrix_type(comm);
   snes_ = quasistatic_snes(comm, type);
   const auto snes = snes_.get();
   check(SNESSetApplicationContext(snes, this));
-  check(SNESSetFunction(snes, work_.get(), EquilibriumCallbacks::residual, this));
+  check(SNESSetFunction(snes, function_.get(), EquilibriumCallbacks::residual, this));
   check(SNESSetObjective(snes, EquilibriumCallbacks::objective, this));
   check(SNESSetJacobian(snes, stiffness_.mat(), stiffness_.mat(), EquilibriumCallbacks::jacobian, this));
   check(SNESSetUpdate(snes, EquilibriumCallbacks::update));
   read_quasistatic_options(snes, type);
-  check(SNESGetTolerances(snes, &atol_, &rtol_, nullptr, nullptr, nullptr));
+  check(SNESGetTolerances(snes, &atol_, &rtol_, nullptr, &most_iterations_, nullptr));
 
   std::copy(system.x.owned().begin(), system.x.owned().end(), trial_.owned().begin());
   stiffness_.assemble(trial_, TangentForm::projected, 1);
@@ -168,14 +170,10 @@ double EquilibriumSolver::energy_change(Vec x) {
   const double change = sums[0] - base_energy_ - sums[1];
   if (!std::isfinite(change)) return std::numeric_limits<float>::max();  // PETSc raises an error at infinity
   if (std::abs(change) > resolved * (std::abs(base_energy_) + std::abs(sums[1]))) return change;
-  VecHandle slope, way;
-  check(VecDuplicate(x, slope.out()));
-  check(VecDuplicate(x, way.out()));
-  check(VecCopy(work_.get(), way.get()));
-  residual(x, slope.get());
-  check(VecAXPY(slope.get(), 1, base_residual_.get()));
+  residual(x, slope_.get());
+  check(VecAXPY(slope_.get(), 1, base_residual_.get()));
   PetscScalar product = 0;
-  check(VecDot(slope.get(), way.get(), &product));
+  check(VecDot(slope_.get(), work_.get(), &product));
   return product / 2;
 }
 
@@ -229,7 +227,7 @@ double EquilibriumSolver::inertia(Vec residual) const {
 // --- one equilibrium
 
 EquilibriumSolver::Outcome EquilibriumSolver::solve(NodeField& x, std::span<const NodeConstraint> held,
-                                                    const NodeField& withheld, double t) {
+                                                    const NodeField& withheld, double load, double t) {
   const PhaseScope scope(Phase::static_solve);
   held_ = held;
   std::fill(load_.owned().begin(), load_.owned().end(), 0.0);
@@ -243,14 +241,14 @@ EquilibriumSolver::Outcome EquilibriumSolver::solve(NodeField& x, std::span<cons
   const double rounding = predict();
   full_below_ = std::numeric_limits<double>::infinity();
   residual(x_.get(), base_residual_.get());
-  const double target = std::max({atol_, rounding, rtol_ * norm_of(base_residual_.get())});
-  check(SNESSetTolerances(snes_.get(), target, 0, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  auto reason = iterate(outcome);
-  while (reason < 0 && full_used_) {  // too early for the full tangent
+  const double target = std::max({atol_, rounding, rtol_ * load, rtol_ * norm_of(base_residual_.get())});
+  auto reason = iterate(target, outcome);
+  while (reason < 0 && full_used_ &&
+         outcome.newton_iterations < most_iterations_) {  // too early for the full one
     PetscReal norm = 0;
     check(SNESGetFunctionNorm(snes_.get(), &norm));
     full_below_ = full_again * norm;
-    reason = iterate(outcome);
+    reason = iterate(target, outcome);
   }
   outcome.converged = reason > 0;
   outcome.reason = SNESConvergedReasons[reason];
@@ -263,16 +261,12 @@ EquilibriumSolver::Outcome EquilibriumSolver::solve(NodeField& x, std::span<cons
 /// Moves held components by their ways and the others along, as far as the tangent knows. Returns the
 /// rounding that any residual has.
 double EquilibriumSolver::predict() {
-  NodeField pull(system_.mesh);
   residual(x_.get(), work_.get());
   stiffness_.hold(held_);
   set_trial(x_.get());
-  stiffness_.assemble(trial_, TangentForm::projected, inertia(work_.get()), pull);
-  VecHandle right, change;
-  check(VecDuplicate(x_.get(), right.out()));
-  check(VecDuplicate(x_.get(), change.out()));
-  check(MatGetDiagonal(stiffness_.mat(), right.get()));
-  const double stiffness = norm_of(right.get());
+  stiffness_.assemble(trial_, TangentForm::projected, inertia(work_.get()), pull_);
+  check(MatGetDiagonal(stiffness_.mat(), right_.get()));
+  const double stiffness = norm_of(right_.get());
   least_inertia_ = singular * stiffness / mass_norm_;
   const double rounding =
       4 * std::numeric_limits<double>::epsilon() * stiffness * norm_of(x_.get(), NORM_INFINITY);
@@ -282,15 +276,15 @@ double EquilibriumSolver::predict() {
   MPI_Allreduce(MPI_IN_PLACE, &furthest, 1, MPI_DOUBLE, MPI_MAX, system_.mesh.comm);
   if (furthest == 0) return rounding;
   KSP ksp = nullptr;
-  check(VecWAXPY(right.get(), 1, work_.get(), pull.vec()));
+  check(VecWAXPY(right_.get(), 1, work_.get(), pull_.vec()));
   check(SNESGetKSP(snes_.get(), &ksp));
   check(KSPSetOperators(ksp, stiffness_.mat(), stiffness_.mat()));
-  check(KSPSolve(ksp, right.get(), change.get()));
+  check(KSPSolve(ksp, right_.get(), change_.get()));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp, &reason));
   if (reason > 0) {
-    zero_held(held_, change.get());
-    check(VecAXPY(x_.get(), -1, change.get()));
+    zero_held(held_, change_.get());
+    check(VecAXPY(x_.get(), -1, change_.get()));
   }
   const VecView moved(x_.get());
   for (const auto& c : held_)
@@ -298,7 +292,10 @@ double EquilibriumSolver::predict() {
   return rounding;
 }
 
-SNESConvergedReason EquilibriumSolver::iterate(Outcome& outcome) {
+/// Newton's method from x_ to a residual of `target`, with the iterations that are left.
+SNESConvergedReason EquilibriumSolver::iterate(double target, Outcome& outcome) {
+  check(SNESSetTolerances(snes_.get(), target, 0, PETSC_DEFAULT, most_iterations_ - outcome.newton_iterations,
+                          PETSC_DEFAULT));
   full_used_ = false;
   last_norm_ = 0;
   check(SNESSolve(snes_.get(), nullptr, x_.get()));

@@ -84,8 +84,8 @@ void NodeMatrix::preallocate(const ElasticForces& elastic, const char* type,
   check(MatAssemblyEnd(pattern.get(), MAT_FINAL_ASSEMBLY));
   mat_ = empty_matrix(mesh_, type, numbering.get());
   check(MatPreallocatorPreallocate(pattern.get(), PETSC_FALSE, mat_.get()));
-  if (std::string_view(type) != MATBAIJ)
-    check(MatSetOption(mat_.get(), MAT_SPD, PETSC_TRUE));  // unknown to MPIBAIJ
+  knows_spd_ = std::string_view(type) != MATBAIJ;  // MPIBAIJ does not
+  if (knows_spd_) check(MatSetOption(mat_.get(), MAT_SYMMETRIC, PETSC_TRUE));
 }
 
 void NodeMatrix::attach_rigid_body_modes() {
@@ -96,6 +96,10 @@ void NodeMatrix::attach_rigid_body_modes() {
   MatNullSpaceHandle modes;
   check(MatNullSpaceCreateRigidBody(coordinates.vec(), modes.out()));
   check(MatSetNearNullSpace(mat_.get(), modes.get()));
+}
+
+void NodeMatrix::declare_positive_definite(bool is) {
+  if (knows_spd_) check(MatSetOption(mat_.get(), MAT_SPD, is ? PETSC_TRUE : PETSC_FALSE));
 }
 
 void NodeMatrix::begin() { check(MatZeroEntries(mat_.get())); }

@@ -1,11 +1,10 @@
 #include "evert/integrators/quasistatic.hpp"
 
 #include "evert/core/error.hpp"
+#include "evert/core/formatted.hpp"
 #include "evert/math/nodal.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace evert {
 namespace {
@@ -19,14 +18,13 @@ void copy_owned(const NodeField& from, NodeField& to) {
   to.touched();
 }
 
+std::string percent(double share) { return formatted("%.4g %%", 100 * share); }
+
 std::string halving_note(double time, double applied, double part,
                          const EquilibriumSolver::Outcome& outcome) {
-  std::array<char, 160> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "t = %.6g s: no rest found (%s) with %.4g %% of the change applied, going on with %.4g %% of it", time,
-      outcome.reason.c_str(), 100 * (applied + part), 100 * (applied + part / 2));
-  return text.data();
+  return formatted("t = %.6g s: no rest found (", time) + outcome.reason + ") with " +
+         percent(applied + part) + " of the change applied, going on with " + percent(applied + part / 2) +
+         " of it";
 }
 
 }  // namespace
@@ -45,6 +43,10 @@ StepReport Quasistatic::advance(System& system, double dt) {
   system.update_forces(end);
   copy_owned(system.f, unbalanced_);
   copy_owned(system.x, reached_);
+  copy_owned(system.f, withheld_);
+  project(ways, withheld_.owned());
+  PetscReal load = 0;  // N
+  check(VecNorm(withheld_.vec(), NORM_2, &load));
   const double largest = 1.0 / options_.load_steps;
   double applied = 0, part = largest;
   while (applied < whole) {
@@ -53,7 +55,7 @@ StepReport Quasistatic::advance(System& system, double dt) {
     for (auto& c : held_) c.prescribed = (next - applied) * c.prescribed;
     for (std::size_t i = 0; i < withheld_.owned().size(); ++i)
       withheld_.owned()[i] = (1 - next) * unbalanced_.owned()[i];
-    const auto outcome = solver_.solve(system.x, held_, withheld_, end);
+    const auto outcome = solver_.solve(system.x, held_, withheld_, load, end);
     report.newton_iterations += outcome.newton_iterations;
     report.linear_iterations += outcome.linear_iterations;
     if (outcome.converged) {
@@ -64,11 +66,11 @@ StepReport Quasistatic::advance(System& system, double dt) {
     }
     report.notes.push_back(halving_note(end, applied, next - applied, outcome));
     copy_owned(reached_, system.x);
-    part /= 2;
+    part = (next - applied) / 2;  // of what was tried, which may be less than `part`
     if (part < largest / (1 << most_halvings))
       throw SimulationError(
-          "no state of rest was found (" + outcome.reason + "), not even with " +
-          std::to_string(1 << most_halvings) +
+          "no state of rest was found (" + outcome.reason + ") beyond " + percent(applied) +
+          " of the change, not even with " + std::to_string(1 << most_halvings) +
           " times smaller load steps; a smaller integrator.time_step, more integrator.load_steps "
           "or other -quasistatic_snes and -quasistatic_ksp options may help");
   }

@@ -56,6 +56,7 @@ void StiffnessMatrix::assemble(NodeField& x, TangentForm form, double inertia, N
 void StiffnessMatrix::fill(NodeField& x, TangentForm form, double inertia, NodeField* pull) {
   const PhaseScope scope(Phase::assembly);
   update_ghosts(elastic_.halo(), x);
+  matrix_.declare_positive_definite(form == TangentForm::projected);
   matrix_.begin();
   for (const auto& block : elastic_.blocks()) {
     if (block == nullptr) continue;

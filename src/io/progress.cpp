@@ -1,6 +1,7 @@
 #include "evert/io/progress.hpp"
 
 #include "evert/core/collective.hpp"
+#include "evert/core/formatted.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,13 +33,6 @@ bool is_terminal(int descriptor) {
 std::size_t width_of(std::FILE* file) {
   winsize size{};
   return ioctl(fileno(file), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
-}
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
 }
 
 }  // namespace

@@ -192,7 +192,8 @@ Mesh read_gmsh(InputCursor& in, VectorField& vectors) {
     const auto name = heading.substr(1);
     if ((name == "Nodes" && has_nodes) || (name == "Elements" && has_elements))
       in.fail("there is a second section $" + std::string(name));
-    if (name == "ElementData" && !has_elements) in.fail("the section $ElementData comes before $Elements");
+    if (name == "ElementData" && vectors.wanted() && !has_elements)
+      in.fail("the section $ElementData comes before $Elements");
     if (name == "Elements" && !has_nodes) in.fail("the section $Elements comes before $Nodes");
     in.rest_of_line();
     read_section(file, version, name);

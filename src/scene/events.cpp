@@ -6,13 +6,52 @@
 #include "tables.hpp"
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace evert {
 namespace {
 
 using schema::join;
 using schema::Value;
+
+template <class Config>
+using Number = std::pair<std::string_view, std::optional<double> Config::*>;
+
+constexpr std::array<Number<MaterialConfig>, 4> material_numbers{
+    {{"youngs_modulus", &MaterialConfig::youngs_modulus},
+     {"poissons_ratio", &MaterialConfig::poissons_ratio},
+     {"lambda", &MaterialConfig::lambda},
+     {"mu", &MaterialConfig::mu}}};
+constexpr std::array<Number<DampingConfig>, 4> damping_numbers{
+    {{"stiffness_proportional", &DampingConfig::stiffness_proportional},
+     {"stiffness_ratio", &DampingConfig::stiffness_ratio},
+     {"mass_proportional", &DampingConfig::mass_proportional},
+     {"mass_ratio", &DampingConfig::mass_ratio}}};
+constexpr std::array<std::pair<std::string_view, double DampingConfig::*>, 3> plain_damping_numbers{
+    {{"alpha", &DampingConfig::alpha},
+     {"beta", &DampingConfig::beta},
+     {"frequency", &DampingConfig::frequency}}};
+
+/// The number `key`, or null where it is not given.
+double* number_of(MaterialConfig& material, std::string_view key) {
+  for (const auto& [name, member] : material_numbers)
+    if (name == key && material.*member) return &*(material.*member);
+  return nullptr;
+}
+
+double* number_of(DampingConfig& damping, std::string_view key) {
+  for (const auto& [name, member] : damping_numbers)
+    if (name == key && damping.*member) return &*(damping.*member);
+  const bool by_coefficients =
+      damping.model != DampingModel::none && !damping.stiffness_proportional && !damping.stiffness_ratio;
+  for (const auto& [name, member] : plain_damping_numbers)
+    if (name == key && (key == "frequency" ? damping.frequency > 0 : by_coefficients))
+      return &(damping.*member);
+  return nullptr;
+}
 
 /// A key that an event may set in this scene.
 struct Settable {
@@ -22,44 +61,35 @@ struct Settable {
   std::optional<std::size_t> group{};
 };
 
-void add_material(std::vector<Settable>& out, const Settable& place,
-                  const std::optional<DampingConfig>& damping, const MaterialConfig* material) {
-  const auto add = [&](const char* key, EventTarget target) {
-    out.push_back({join(place.path, key), target, place.owner, place.group});
+/// Adds what is given of a material or damping that stands at `place`.
+template <class Config>
+void add_numbers(std::vector<Settable>& out, const Settable& place, Config& config) {
+  const auto add = [&](std::string_view key) {
+    if (number_of(config, key) != nullptr)
+      out.push_back({join(place.path, key), place.target, place.owner, place.group});
   };
-  if (material != nullptr && material->youngs_modulus) {
-    add("material.youngs_modulus", EventTarget::youngs_modulus);
-    add("material.poissons_ratio", EventTarget::poissons_ratio);
-  }
-  if (material != nullptr && material->mu) {
-    add("material.lambda", EventTarget::lambda);
-    add("material.mu", EventTarget::mu);
-  }
-  if (!damping) return;
-  if (damping->mass_proportional) add("damping.mass_proportional", EventTarget::mass_proportional);
-  if (damping->mass_ratio) add("damping.mass_ratio", EventTarget::mass_ratio);
-  if (damping->frequency > 0) add("damping.frequency", EventTarget::frequency);
-  if (damping->model == DampingModel::none) return;
-  if (damping->stiffness_proportional) {
-    add("damping.stiffness_proportional", EventTarget::stiffness_proportional);
-  } else if (damping->stiffness_ratio) {
-    add("damping.stiffness_ratio", EventTarget::stiffness_ratio);
+  if constexpr (std::is_same_v<Config, MaterialConfig>) {
+    for (const auto& [key, member] : material_numbers) add(key);
   } else {
-    add("damping.alpha", EventTarget::alpha);
-    add("damping.beta", EventTarget::beta);
+    for (const auto& [key, member] : damping_numbers) add(key);
+    for (const auto& [key, member] : plain_damping_numbers) add(key);
   }
 }
 
-std::vector<Settable> settable_keys(const SceneConfig& scene) {
+std::vector<Settable> settable_keys(SceneConfig& scene) {
   std::vector<Settable> out{{"gravity", EventTarget::gravity}};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const auto& body = scene.bodies[b];
+    auto& body = scene.bodies[b];
     const auto path = "bodies." + body.name;
-    add_material(out, {path, {}, b}, body.damping, &body.material);
+    add_numbers(out, {path + ".material", EventTarget::material, b}, body.material);
+    if (body.damping) add_numbers(out, {path + ".damping", EventTarget::damping, b}, *body.damping);
     for (std::size_t g = 0; g < body.groups.size(); ++g) {
-      const auto& group = body.groups[g];
-      add_material(out, {path + ".groups." + group.name, {}, b, g}, group.damping,
-                   group.material ? &*group.material : nullptr);
+      auto& group = body.groups[g];
+      const auto of_group = path + ".groups." + group.name;
+      if (group.material)
+        add_numbers(out, {of_group + ".material", EventTarget::material, b, g}, *group.material);
+      if (group.damping)
+        add_numbers(out, {of_group + ".damping", EventTarget::damping, b, g}, *group.damping);
     }
   }
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
@@ -67,20 +97,26 @@ std::vector<Settable> settable_keys(const SceneConfig& scene) {
   return out;
 }
 
+std::string_view last_key(std::string_view path) {
+  const auto dot = path.rfind('.');
+  return path.substr(dot == std::string_view::npos ? 0 : dot + 1);
+}
+
 /// The map that holds the last key of `path`.
-const Value& holder(const Value& root, std::string_view path) {
+Value& holder(Value& root, std::string_view path) {
   const auto dot = path.find('.');
   if (dot == std::string_view::npos) return root;
   return holder(*root.find(path.substr(0, dot)), path.substr(dot + 1));
 }
 
 /// The value of `event`, read as `path` of the scene with `to` in the place of what stands there: all checks
-/// of the table apply.
-void read_value(EventConfig& event, const Value& root, const Value& to) {
-  const auto dot = event.set.rfind('.');
-  const auto parent = event.set.substr(0, dot == std::string::npos ? 0 : dot);
-  Value map = holder(root, event.set);
-  map.set(event.set.substr(dot == std::string::npos ? 0 : dot + 1), to);
+/// of the table apply. `root` is the scene as the events before have left it.
+void read_value(EventConfig& event, Value& root, const Value& to) {
+  const auto key = last_key(event.set);
+  const auto parent = event.set.substr(0, event.set.size() - std::min(event.set.size(), key.size() + 1));
+  Value& map = holder(root, event.set);
+  map.set(std::string(key), to);
+  const auto number_in = [&](auto config) { return *number_of(config, key); };
   switch (event.target) {
     case EventTarget::gravity:
       event.vector = gravity_type().read(to, event.set);
@@ -88,38 +124,11 @@ void read_value(EventConfig& event, const Value& root, const Value& to) {
     case EventTarget::friction:
       event.value = friction_type().read(to, event.set);
       break;
-    case EventTarget::youngs_modulus:
-      event.value = *material_table().read(map, parent).youngs_modulus;
+    case EventTarget::material:
+      event.value = number_in(material_table().read(map, parent));
       break;
-    case EventTarget::poissons_ratio:
-      event.value = *material_table().read(map, parent).poissons_ratio;
-      break;
-    case EventTarget::lambda:
-      event.value = *material_table().read(map, parent).lambda;
-      break;
-    case EventTarget::mu:
-      event.value = *material_table().read(map, parent).mu;
-      break;
-    case EventTarget::stiffness_proportional:
-      event.value = *damping_table().read(map, parent).stiffness_proportional;
-      break;
-    case EventTarget::stiffness_ratio:
-      event.value = *damping_table().read(map, parent).stiffness_ratio;
-      break;
-    case EventTarget::alpha:
-      event.value = damping_table().read(map, parent).alpha;
-      break;
-    case EventTarget::beta:
-      event.value = damping_table().read(map, parent).beta;
-      break;
-    case EventTarget::mass_proportional:
-      event.value = *damping_table().read(map, parent).mass_proportional;
-      break;
-    case EventTarget::mass_ratio:
-      event.value = *damping_table().read(map, parent).mass_ratio;
-      break;
-    case EventTarget::frequency:
-      event.value = damping_table().read(map, parent).frequency;
+    case EventTarget::damping:
+      event.value = number_in(damping_table().read(map, parent));
       break;
   }
 }
@@ -132,8 +141,13 @@ void resolve_events(SceneConfig& scene, const Value& root) {
   std::vector<std::string> paths;
   for (const auto& key : settable) paths.push_back(key.path);
   const auto& list = *root.find("events");
-  for (std::size_t i = 0; i < scene.events.size(); ++i) {
-    auto& event = scene.events[i];
+  std::vector<std::size_t> in_time(scene.events.size());
+  std::iota(in_time.begin(), in_time.end(), 0);
+  std::ranges::stable_sort(in_time, {}, [&](std::size_t i) { return scene.events[i].at; });
+  Value changed = root;
+  std::vector<EventConfig> sorted;
+  for (const std::size_t i : in_time) {
+    auto& event = sorted.emplace_back(scene.events[i]);
     const auto path = "events[" + std::to_string(i) + "]";
     const auto found = std::find(paths.begin(), paths.end(), event.set);
     if (found == paths.end())
@@ -144,61 +158,30 @@ void resolve_events(SceneConfig& scene, const Value& root) {
     event.target = key.target;
     event.owner = key.owner;
     event.group = key.group;
-    read_value(event, root, *list.items[i].find("to"));
+    read_value(event, changed, *list.items[i].find("to"));
   }
-  std::stable_sort(scene.events.begin(), scene.events.end(),
-                   [](const EventConfig& a, const EventConfig& b) { return a.at < b.at; });
+  scene.events = std::move(sorted);
 }
 
 void apply_event(SceneConfig& scene, const EventConfig& event) {
-  if (event.target == EventTarget::gravity) {
-    scene.gravity = event.vector;
-    return;
-  }
-  if (event.target == EventTarget::friction) {
-    scene.obstacles[event.owner].friction = event.value;
-    return;
-  }
-  auto& body = scene.bodies[event.owner];
-  auto& material = event.group ? *body.groups[*event.group].material : body.material;
-  auto& damping = event.group ? body.groups[*event.group].damping : body.damping;
+  const auto set = [&](auto& config) { *number_of(config, last_key(event.set)) = event.value; };
   switch (event.target) {
-    case EventTarget::youngs_modulus:
-      material.youngs_modulus = event.value;
-      break;
-    case EventTarget::poissons_ratio:
-      material.poissons_ratio = event.value;
-      break;
-    case EventTarget::lambda:
-      material.lambda = event.value;
-      break;
-    case EventTarget::mu:
-      material.mu = event.value;
-      break;
-    case EventTarget::stiffness_proportional:
-      damping->stiffness_proportional = event.value;
-      break;
-    case EventTarget::stiffness_ratio:
-      damping->stiffness_ratio = event.value;
-      break;
-    case EventTarget::alpha:
-      damping->alpha = event.value;
-      break;
-    case EventTarget::beta:
-      damping->beta = event.value;
-      break;
-    case EventTarget::mass_proportional:
-      damping->mass_proportional = event.value;
-      break;
-    case EventTarget::mass_ratio:
-      damping->mass_ratio = event.value;
-      break;
-    case EventTarget::frequency:
-      damping->frequency = event.value;
-      break;
     case EventTarget::gravity:
-    case EventTarget::friction:
+      scene.gravity = event.vector;
       break;
+    case EventTarget::friction:
+      scene.obstacles[event.owner].friction = event.value;
+      break;
+    case EventTarget::material: {
+      auto& body = scene.bodies[event.owner];
+      set(event.group ? *body.groups[*event.group].material : body.material);
+      break;
+    }
+    case EventTarget::damping: {
+      auto& body = scene.bodies[event.owner];
+      set(*(event.group ? body.groups[*event.group].damping : body.damping));
+      break;
+    }
   }
 }
 

@@ -1,4 +1,5 @@
 #include "tables.hpp"
+#include <cmath>
 #include <functional>
 
 /// Where fibres run, and how active they are.
@@ -34,10 +35,14 @@ const Table<CurveFibres>& curve_fibres() {
           .then([](CurveFibres& fibres, const Value& map, const std::string& path) {
             const auto& list = *map.find("curve");
             if (fibres.curve.size() < 2) fail(list, join(path, "curve"), "must have two points at least");
-            for (std::size_t i = 1; i < fibres.curve.size(); ++i)
-              if (!(norm(fibres.curve[i] - fibres.curve[i - 1]) > 0))
-                fail(list.items[i], join(path, "curve") + "[" + std::to_string(i) + "]",
-                     "is the point before it once more: a segment needs a direction");
+            for (std::size_t i = 1; i < fibres.curve.size(); ++i) {
+              const Vec3d segment = fibres.curve[i] - fibres.curve[i - 1];
+              const auto where = join(path, "curve") + "[" + std::to_string(i) + "]";
+              if (!std::isfinite(dot(segment, segment)))
+                fail(list.items[i], where, "is too far from the point before it");
+              if (!(dot(segment, segment) > 0))
+                fail(list.items[i], where, "is the point before it once more: a segment needs a direction");
+            }
           });
   return table;
 }

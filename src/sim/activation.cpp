@@ -1,6 +1,7 @@
 #include "evert/sim/activation.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace evert {
 
@@ -11,6 +12,11 @@ double Activation::at(double time) const {
   if (later == keyframes.end()) return earlier->activation;
   const double share = (time - earlier->time) / (later->time - earlier->time);
   return earlier->activation + share * (later->activation - earlier->activation);
+}
+
+double Activation::next_keyframe(double time) const {
+  const auto later = std::ranges::upper_bound(keyframes, time, {}, &ActivationKeyframe::time);
+  return later == keyframes.end() ? std::numeric_limits<double>::infinity() : later->time;
 }
 
 double Activation::rise(double time, double end) const {

@@ -149,16 +149,26 @@ double Simulation::suggested_time_step() {
   refresh_forces();
   if (fixed_time_step_ > 0) return fixed_time_step_;
   if (quasistatic()) return std::numeric_limits<double>::infinity();
-  if (activation_rises(time_step_.horizon())) time_step_.reset();
-  return time_step_.suggest(system_);
+  const double dt = time_step_.suggest(system_);
+  if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
+  // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
+  activate_highest(system_.time + time_step_.horizon());
+  time_step_.reset();
+  const double ahead = time_step_.suggest(system_);
+  activate(system_.time);
+  return std::min(dt, ahead);
 }
 
 double Simulation::next_event() const {
-  return events_done_ < events_.size() ? events_[events_done_].time : std::numeric_limits<double>::infinity();
+  double next = std::numeric_limits<double>::infinity();
+  if (events_done_ < events_.size()) next = events_[events_done_].time;
+  for (const auto& activation : activations_) next = std::min(next, activation.next_keyframe(system_.time));
+  return next;
 }
 
 void Simulation::apply_due_events() {
-  while (next_event() <= system_.time) events_[events_done_++].apply(*this);
+  while (events_done_ < events_.size() && events_[events_done_].time <= system_.time)
+    events_[events_done_++].apply(*this);
 }
 
 void Simulation::refresh_forces() {
@@ -170,6 +180,12 @@ void Simulation::refresh_forces() {
 
 void Simulation::activate(double time) {
   for (const auto& activation : activations_) elastic_.set_activation(activation.region, activation.at(time));
+}
+
+void Simulation::activate_highest(double until) {
+  for (const auto& activation : activations_)
+    elastic_.set_activation(activation.region,
+                            activation.at(system_.time) + activation.rise(system_.time, until));
 }
 
 bool Simulation::activation_rises(double duration) const {

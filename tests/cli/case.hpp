@@ -36,6 +36,8 @@ struct Case {
 
 /// Those of muscle and tendon.
 [[nodiscard]] std::vector<Case> fibre_cases();
+[[nodiscard]] std::vector<Case> material_cases();
+[[nodiscard]] std::vector<Case> quasistatic_cases();
 
 // --- good input to spoil
 

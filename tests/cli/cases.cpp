@@ -25,21 +25,6 @@ File undamped_scene() {
   return scene({{"    damping: {model: rotated, stiffness_proportional: 0.01}\n", ""}});
 }
 
-/// The cube without obstacle, held at one side, at rest under its weight.
-File quasistatic_scene(const std::vector<Edit>& edits = {}) {
-  std::vector<Edit> all{
-      {"obstacles:\n  ground: {shape: half_space, normal: [0, 1, 0], point: [0, -1, 0], friction: 0.4}\n",
-       "constraints: [{body: cube, node_set: x_min, fixed: true}]\nintegrator: {method: quasistatic}\n"},
-      {"petsc: {damping_ksp_rtol: 1e-6}\n", ""}};
-  all.insert(all.end(), edits.begin(), edits.end());
-  return scene(all);
-}
-
-Case bad_quasistatic(const std::string& name, const std::string& command,
-                     const std::vector<std::string>& says) {
-  return {.name = name, .command = command, .files = {quasistatic_scene()}, .says = says};
-}
-
 Case bad_command(const std::string& name, const std::string& command, const std::vector<std::string>& says) {
   return {.name = name, .command = command, .files = {scene()}, .says = says};
 }
@@ -115,33 +100,6 @@ const std::vector<Case> good_runs{
      .command = "run scene.yaml -damping_ksp_type bicg",
      .files = {scene()},
      .exit_code = 0},
-    {.name = "quasistatic",
-     .files = {quasistatic_scene()},
-     .exit_code = 0,
-     .says = {"finished at t = 0.002 s, 2 steps"}},
-    {.name = "quasistatic_check",
-     .command = "check scene.yaml",
-     .files = {quasistatic_scene()},
-     .exit_code = 0,
-     .says = {"one load step from stop to stop"}},
-    {.name = "quasistatic_options_of_the_solve",
-     .command =
-         "run scene.yaml -quasistatic_snes_monitor -quasistatic_snes_converged_reason "
-         "-quasistatic_ksp_converged_reason -quasistatic_snes_view -quasistatic_snes_linesearch_monitor",
-     .files = {quasistatic_scene()},
-     .exit_code = 0,
-     .says = {"SNES Function norm", "Nonlinear quasistatic_ solve converged",
-              "Linear quasistatic_ solve converged"}},
-    {.name = "quasistatic_blocks",
-     .command = "run scene.yaml -quasistatic_mat_type sbaij -quasistatic_pc_type bjacobi "
-                "-quasistatic_sub_pc_type icc",
-     .files = {quasistatic_scene()},
-     .exit_code = 0},
-    {.name = "quasistatic_from_a_motion",
-     .before = "run scene.yaml -set integrator.method=newmark -set checkpoint.every_simulated=1e-3",
-     .command = "run scene.yaml --restart out/checkpoint.h5 -set end_time=3e-3",
-     .files = {quasistatic_scene()},
-     .exit_code = 0},
     {.name = "version", .command = "--version", .exit_code = 0, .says = {"evert "}},
     {.name = "help", .command = "run -help", .exit_code = 0, .says = {"damping_ksp_rtol"}},
     {.name = "bench_step",
@@ -202,103 +160,6 @@ const std::vector<Case> views{
     bad_view("view_unwritable", "out/run.h5 -o scene.yaml/view.html", {"scene.yaml/view.html"}),
 };
 
-/// `evert material`, which needs one rank only.
-Case good_material(const std::string& name, const std::string& arguments,
-                   const std::vector<std::string>& says, const std::vector<File>& files = {},
-                   const std::function<void(const fs::path& place)>& inspect = {}) {
-  return {.name = name,
-          .command = "material " + arguments,
-          .files = files,
-          .exit_code = 0,
-          .says = says,
-          .ranks = {1},
-          .inspect = inspect};
-}
-
-Case bad_material(const std::string& name, const std::string& arguments, const std::vector<std::string>& says,
-                  const std::vector<File>& files = {}) {
-  return {.name = name, .command = "material " + arguments, .files = files, .says = says, .ranks = {1}};
-}
-
-const File gradients{"f.txt",
-                     "# at rest, stretched and turned by 90 degrees, inverted\n"
-                     "1 0 0 0 1 0 0 0 1\n\n0,-1,0,2,0,0,0,0,1  # commas\n+1 0 0 0 1 0 0 0 -1\n"};
-
-/// λ = 4, μ = 6 of rotated_linear: P = R (2μ (S − 1) + λ tr(S − 1)).
-void expect_stresses(const fs::path& place) {
-  std::ifstream file(place / "p.csv");
-  std::vector<std::string> rows;
-  for (std::string row; std::getline(file, row);) rows.push_back(row);
-  ASSERT_EQ(rows.size(), 4);
-  EXPECT_TRUE(rows[0].starts_with("sigma_1,sigma_2,sigma_3,P_11 [Pa],P_12 [Pa]"));
-  const std::vector<std::vector<double>> expected{{1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
-                                                  {2, 1, 1, 0, -4, 0, 16, 0, 0, 0, 0, 4, 8},
-                                                  {1, 1, -1, -8, 0, 0, 0, -8, 0, 0, 0, -32, 32}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::istringstream numbers(rows[i + 1]);
-    std::string number;
-    for (const double value : expected[i]) {
-      ASSERT_TRUE(std::getline(numbers, number, ','));
-      EXPECT_NEAR(std::stod(number), value, 1e-13) << rows[i + 1];
-    }
-  }
-}
-
-void expect_plot(const fs::path& place) {
-  std::ostringstream content;
-  content << std::ifstream(place / "all.svg").rdbuf();
-  const std::string text = content.str();
-  EXPECT_TRUE(text.starts_with("<svg") && text.ends_with("</svg>\n"));
-  EXPECT_NE(text.find("stable_neo_hookean"), std::string::npos);
-  EXPECT_EQ(text.find(",nan"), std::string::npos);
-}
-
-const std::vector<Case> materials{
-    good_material("material_help", "--help", {"-gradients", "-mu_01_share", "mooney_rivlin"}),
-    good_material("material_table", "rotated_linear -lambda 4 -mu 6 -path uniaxial -from -1 -to 1 -points 3",
-                  {"lambda 4 Pa, mu 6 Pa", "uniaxial: principal stretches (s, 1, 1)",
-                   "-1             -32               0              -8"}),
-    good_material("material_all_paths", "mooney_rivlin", {"biaxial", "volumetric", "shear"}),
-    good_material("material_plot", "all -plot all.svg", {"wrote all.svg"}, {}, expect_plot),
-    good_material("material_gradients", "rotated_linear -lambda 4 -mu 6 -gradients f.txt -o p.csv",
-                  {"wrote p.csv: 3 stresses"}, {gradients}, expect_stresses),
-    good_material("material_gradients_to_the_screen", "spline -gradients f.txt",
-                  {"sigma_1,sigma_2,sigma_3,P_11"}, {gradients}),
-    bad_material("material_nothing", "", {"evert material needs a model: neo_hookean"}),
-    bad_material("material_unknown", "neohookean", {"model", "did you mean 'neo_hookean'?"}),
-    bad_material("material_unknown_option", "spline -elongation_limt 2",
-                 {"did you mean '-elongation_limit'?"}),
-    bad_material("material_incompressible", "neo_hookean -poissons_ratio 0.5",
-                 {"evert material: poissons_ratio", "(-1, 0.5)"}),
-    bad_material("material_of_another_model", "neo_hookean -elongation_limit 2",
-                 {"elongation_limit", "only with spline"}),
-    bad_material("material_limits_in_wrong_order", "spline -compression_limit 0.9 -elongation_limit 0.8",
-                 {"elongation_limit", ">= 1"}),
-    bad_material("material_in_two_ways", "neo_hookean -youngs_modulus 1 -mu 1", {"needs either"}),
-    bad_material("material_odd_number", "neo_hookean -youngs_modulus stiff", {"youngs_modulus", "'stiff'"}),
-    bad_material("material_unknown_path", "neo_hookean -path uniaxal", {"did you mean 'uniaxial'?"}),
-    bad_material("material_empty_range", "neo_hookean -from 1 -to 1", {"-from must be less than -to"}),
-    bad_material("material_one_point", "neo_hookean -points 1", {"-points must be from 2"}),
-    bad_material("material_all_without_plot", "all", {"'all' goes with -plot only"}),
-    bad_material("material_plot_of_gradients", "spline -plot a.svg -gradients f.txt", {"exclude each other"},
-                 {gradients}),
-    bad_material("material_output_of_nothing", "spline -o p.csv", {"-o goes with -gradients only"}),
-    bad_material("material_plot_to_nowhere", "spline -plot /proc/a.svg", {"/proc/a.svg"}),
-    bad_material("material_no_gradients", "spline -gradients f.txt", {"f.txt: there is no such file"}),
-    bad_material("material_gradients_is_directory", "spline -gradients f.txt", {"f.txt: is a directory"},
-                 {{"f.txt/"}}),
-    bad_material("material_empty_gradients", "spline -gradients f.txt", {"holds no deformation gradient"},
-                 {{"f.txt", "# nothing\n"}}),
-    bad_material("material_eight_numbers", "spline -gradients f.txt", {"f.txt:2: holds 8 numbers", "has 9"},
-                 {{"f.txt", "1 0 0 0 1 0 0 0 1\n1 0 0 0 1 0 0 0\n"}}),
-    bad_material("material_gradient_of_words", "spline -gradients f.txt", {"f.txt:1: '1.0e' is no finite"},
-                 {{"f.txt", "1.0e 0 0 0 1 0 0 0 1\n"}}),
-    bad_material("material_gradient_not_finite", "spline -gradients f.txt", {"'nan' is no finite number"},
-                 {{"f.txt", "nan 0 0 0 1 0 0 0 1\n"}}),
-    bad_material("material_gradient_too_large", "spline -gradients f.txt", {"'1e999' does not fit"},
-                 {{"f.txt", "1e999 0 0 0 1 0 0 0 1\n"}}),
-};
-
 const std::vector<Case> bad_commands{
     bad_command("unknown_command", "rum scene.yaml", {"'rum'", "did you mean 'run'?"}),
     bad_command("no_scene", "run", {"evert run needs a scene file"}),
@@ -338,34 +199,6 @@ const std::vector<Case> bad_commands{
      .ranks = {2, 3}},
     bad_command("composite_of_nothing", "run scene.yaml -damping_mat_type aij -damping_pc_type composite",
                 {"PETSc refuses"}),
-    bad_quasistatic("quasistatic_option_of_damping", "run scene.yaml -damping_ksp_rtol 1e-6",
-                    {"-damping_ksp_rtol: has no effect", "quasistatic"}),
-    bad_quasistatic("quasistatic_unknown_option", "run scene.yaml -quasistatic_snes_rtoll 1e-6",
-                    {"quasistatic_snes_rtoll", "did you mean '-quasistatic_snes_rtol'?"}),
-    bad_quasistatic("quasistatic_option_without_value", "run scene.yaml -quasistatic_snes_rtol",
-                    {"-quasistatic_snes_rtol: needs a value"}),
-    bad_quasistatic("quasistatic_tolerance_of_nothing", "run scene.yaml -quasistatic_snes_rtol 2",
-                    {"-quasistatic_snes_rtol is not allowed: must be in [0, 1)"}),
-    bad_quasistatic("quasistatic_unknown_method", "run scene.yaml -quasistatic_snes_type newton", {"newton"}),
-    bad_quasistatic("quasistatic_method_of_grids", "run scene.yaml -quasistatic_snes_type fas",
-                    {"-quasistatic_snes_type fas is not allowed: must be newtonls, newtontr or qn"}),
-    bad_quasistatic("quasistatic_shell", "run scene.yaml -quasistatic_mat_type shell",
-                    {"-quasistatic_mat_type shell is not allowed: must be aij, baij or sbaij"}),
-    bad_quasistatic("quasistatic_gamg_of_blocks",
-                    "run scene.yaml -quasistatic_mat_type baij -quasistatic_pc_type gamg",
-                    {"-quasistatic_pc_type gamg does not work with -quasistatic_mat_type baij: must be aij"}),
-    bad_quasistatic("quasistatic_option_of_the_automatic_step", "run scene.yaml -set integrator.safety=0.5",
-                    {"integrator.safety", "has no effect", "newmark"}),
-    bad_quasistatic("quasistatic_no_load_steps", "run scene.yaml -set integrator.load_steps=0",
-                    {"integrator.load_steps", "0"}),
-    bad_quasistatic("quasistatic_unknown_tangent", "run scene.yaml -set integrator.tangent=secant",
-                    {"integrator.tangent", "adaptive"}),
-    bad_command("quasistatic_obstacle", "run scene.yaml -set integrator.method=quasistatic",
-                {"scene.yaml", "obstacles", "quasistatic", "no contact"}),
-    bad_quasistatic("quasistatic_falls", "run scene.yaml -set constraints=[]",
-                    {"bodies.cube: falls for ever", "constraints"}),
-    bad_command("quasistatic_option_of_a_motion", "run scene.yaml -quasistatic_snes_rtol 1e-6",
-                {"-quasistatic_snes_rtol: has no effect", "not quasistatic"}),
     bad_command("load_steps_of_a_motion", "run scene.yaml -set integrator.load_steps=4",
                 {"integrator.load_steps", "has no effect", "quasistatic"}),
     {.name = "option_without_damping",
@@ -593,12 +426,6 @@ const std::vector<Case> failures{
      .files = {scene()},
      .exit_code = 3,
      .says = {"the simulation failed: at t = ", "integrator.time_step"}},
-    {.name = "quasistatic_finds_no_rest",
-     .command = "run scene.yaml -quasistatic_snes_max_it 1 -quasistatic_snes_rtol 1e-14",
-     .files = {quasistatic_scene()},
-     .exit_code = 3,
-     .says = {"the simulation failed: at t = 0 s, step 0: no state of rest was found (DIVERGED_MAX_IT)",
-              "1024 times smaller load steps", "integrator.load_steps"}},
     failing("overflowing_stiffness", {{"youngs_modulus: 1e5", "youngs_modulus: 1e300"}},
             {"the simulation failed: at t = 0 s, step 0"}),
     failing("overflowing_weight", {{"gravity: [0, -9.81, 0]", "gravity: [0, -1e308, 0]"}},
@@ -685,8 +512,9 @@ std::vector<Case> cut_meshes() {
 const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
-    for (const auto& group : {good_runs, views, materials, bad_commands, bad_scenes, bad_meshes, cut_meshes(),
-                              fibre_cases(), failures, bad_output, bad_restarts})
+    for (const auto& group :
+         {good_runs, views, material_cases(), quasistatic_cases(), bad_commands, bad_scenes, bad_meshes,
+          cut_meshes(), fibre_cases(), failures, bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

@@ -196,39 +196,11 @@ std::vector<Case> bad_fields() {
   };
 }
 
-std::vector<Case> material_cases() {
-  const auto good = [](const std::string& name, const std::string& arguments,
-                       const std::vector<std::string>& says) {
-    return Case{.name = name, .command = "material " + arguments, .exit_code = 0, .says = says, .ranks = {1}};
-  };
-  const auto bad = [](const std::string& name, const std::string& arguments,
-                      const std::vector<std::string>& says) {
-    return Case{.name = name, .command = "material " + arguments, .says = says, .ranks = {1}};
-  };
-  return {
-      // At rest only the fibre pulls, with the peak stress; across it the matrix alone is stretched.
-      good("material_muscle_along", "muscle -activation 1 -path uniaxial -from 1 -to 2 -points 2",
-           {"uniaxial: principal stretches (s, 1, 1)", "1          300000               0               0"}),
-      good("material_muscle_across", "muscle -activation 1 -path across -from 1 -to 2 -points 2",
-           {"across: principal stretches (1, s, 1)", "1          300000"}),
-      good("material_muscle_turned",
-           "muscle -activation 0.5 -fibre 0,0,2 -path uniaxial -from 1 -to 2 -points 2",
-           {"1               0               0               0          150000"}),
-      good("material_tendon_plot", "tendon -plot tendon.svg", {"wrote tendon.svg"}),
-      bad("material_too_active", "muscle -activation 1.1", {"-activation must be in [0, 1], not 1.1"}),
-      bad("material_active_tendon", "tendon -activation 1", {"-activation goes with muscle only"}),
-      bad("material_fibre_of_isotropic", "spline -fibre 1,0,0", {"-fibre goes with muscle and tendon only"}),
-      bad("material_fibre_of_no_direction", "muscle -fibre 0,0,0", {"-fibre must not be 0,0,0"}),
-      bad("material_fibre_of_words", "muscle -fibre x", {"-fibre must be three finite numbers"}),
-      bad("material_across_isotropic", "spline -path across", {"-path is 'across': must be"}),
-  };
-}
-
 }  // namespace
 
 std::vector<Case> fibre_cases() {
   std::vector<Case> all;
-  for (const auto& group : {good_cases(), bad_scenes(), bad_fields(), material_cases()})
+  for (const auto& group : {good_cases(), bad_scenes(), bad_fields()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

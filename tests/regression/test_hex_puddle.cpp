@@ -1,4 +1,5 @@
 // examples/hex_puddle, of 216 hexahedra: collapses, and is whole again.
+#include "evert/scene/petsc_options.hpp"
 #include "evert/sim/shape_error.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ BuiltScene small_ring() {
   auto scene = load_scene(
       PETSC_COMM_WORLD, file,
       std::vector<std::string>{"bodies.ring.mesh.cells=[9, 9, 3]", "bodies.ring.mesh.hole=[3, 3]"});
-  PetscOptionsSetValue(nullptr, "-damping_ksp_rtol", "1e-4");  // as its petsc block
+  apply_petsc_block(scene);
   return build_scene(PETSC_COMM_WORLD, scene);
 }
 

@@ -24,6 +24,12 @@ inline std::vector<double> gathered(const DistributedMesh& mesh, const NodeField
   return all;
 }
 
+/// Collective. These positions after steps of the length that the simulation suggests.
+inline std::vector<double> after_steps(Simulation& simulation, int steps) {
+  for (int step = 0; step < steps; ++step) simulation.step(simulation.suggested_time_step());
+  return gathered(simulation.mesh(), simulation.positions());
+}
+
 /// Largest difference of two arrays.
 inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = 0;

@@ -113,25 +113,20 @@ events:
   - {at: 0.004, set: gravity, to: [0, 0, -9.81]}
 )";
 
-std::vector<double> after_steps(Simulation& simulation, int steps) {
-  for (int step = 0; step < steps; ++step) simulation.step(simulation.suggested_time_step());
-  return test::gathered(simulation.mesh(), simulation.positions());
-}
-
 TEST(Muscle, OfSeveralRanksIsThatOfOne) {
-  const auto alone = after_steps(*test::build(curved_strip, {}, PETSC_COMM_SELF).simulation, 100);
+  const auto alone = test::after_steps(*test::build(curved_strip, {}, PETSC_COMM_SELF).simulation, 100);
   const auto scene = test::build(curved_strip);
-  EXPECT_LE(test::largest_difference(alone, after_steps(*scene.simulation, 100)), 1e-9 * 0.1);
+  EXPECT_LE(test::largest_difference(alone, test::after_steps(*scene.simulation, 100)), 1e-9 * 0.1);
   EXPECT_GT(scene.simulation->time(), 0.002) << "muscle must have become active";
   const auto straight =
       test::build(curved_strip, {"bodies.strip.fibres={direction: [1, 0, 0]}"}, PETSC_COMM_SELF);
-  EXPECT_GT(test::largest_difference(alone, after_steps(*straight.simulation, 100)), 1e-6)
+  EXPECT_GT(test::largest_difference(alone, test::after_steps(*straight.simulation, 100)), 1e-6)
       << "the direction must matter";
 }
 
 TEST(Muscle, RestoredIsBitwiseEqual) {
   const auto whole = test::build(curved_strip);
-  after_steps(*whole.simulation, 23);
+  test::after_steps(*whole.simulation, 23);
   whole.simulation->step_to(whole.simulation->time() + 1e-5 / 3);
   const auto [x, v, changes] = whole.simulation->node_state();
   const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
@@ -139,29 +134,29 @@ TEST(Muscle, RestoredIsBitwiseEqual) {
   const auto scalars = whole.simulation->state_scalars();
   const auto restarted = test::build(curved_strip);
   restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
-  EXPECT_EQ(after_steps(*restarted.simulation, 60), after_steps(*whole.simulation, 60));
+  EXPECT_EQ(test::after_steps(*restarted.simulation, 60), test::after_steps(*whole.simulation, 60));
 }
 
-/// The oldest estimate of the stable step that a step is made with, in steps.
-double oldest_estimate(Simulation& simulation, int steps) {
-  double oldest = 0;
-  for (int step = 0; step < steps; ++step) {
+TEST(Muscle, StableStepHoldsForTheActivationToCome) {
+  const auto first_step = [](const std::string& activation) {
+    const auto scene = test::build(free_strip, {"bodies.strip.activation=" + activation});
+    auto& simulation = *scene.simulation;
+    const double energy = simulation.measure().elastic_energy;
     const double dt = simulation.suggested_time_step();
-    for (const auto& [name, value] : simulation.state_scalars())
-      if (name == "stable_time_step_age") oldest = std::max(oldest, value);
-    simulation.step(dt);
-  }
-  return oldest;
+    EXPECT_EQ(simulation.measure().elastic_energy, energy) << "looking ahead changes nothing";
+    return dt;
+  };
+  EXPECT_LT(first_step("1"), first_step("0"));
+  EXPECT_EQ(first_step("[[0, 0], [1e-6, 1]]"), first_step("1"));
+  EXPECT_EQ(first_step("[[0, 1], [1e-6, 0]]"), first_step("1"));
+  EXPECT_EQ(first_step("[[0, 0], [1, 0], [1.001, 1]]"), first_step("0")) << "not for what is far ahead";
 }
 
-TEST(Muscle, StableStepIsEstimatedAnewWhileActivationRises) {
-  const auto oldest = [](const std::string& activation) {
-    const auto scene = test::build(free_strip, {"bodies.strip.activation=" + activation}, PETSC_COMM_SELF);
-    return oldest_estimate(*scene.simulation, 12);
-  };
-  EXPECT_EQ(oldest("[[-0.01, 0], [0.02, 1]]"), 1);
-  EXPECT_GT(oldest("[[-0.01, 1], [0.02, 0]]"), 1) << "what becomes softer needs no new estimate";
-  EXPECT_GT(oldest("0.5"), 1);
+TEST(Muscle, KeyframesAreEvents) {
+  const auto scene = test::build(free_strip, {"bodies.strip.activation=[[0, 0], [0.01, 1], [0.03, 0]]"});
+  EXPECT_EQ(scene.simulation->next_event(), 0.01);
+  scene.simulation->step_to(0.01);
+  EXPECT_EQ(scene.simulation->next_event(), 0.03);
 }
 
 /// An event that sets a modulus to what it is must not forget the activation.
@@ -192,6 +187,9 @@ TEST(Activation, IsLinearBetweenItsKeyframes) {
   EXPECT_DOUBLE_EQ(activation.rise(1.5, 2), 0.2);
   EXPECT_DOUBLE_EQ(activation.rise(2, 100), 0.4) << "the highest is in between";
   EXPECT_DOUBLE_EQ(activation.rise(3, 4), 0);
+  EXPECT_EQ(activation.next_keyframe(0), 1);
+  EXPECT_EQ(activation.next_keyframe(1), 3);
+  EXPECT_EQ(activation.next_keyframe(4), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 #include <sstream>
 #include <unistd.h>
 
@@ -69,17 +70,17 @@ TEST_F(QuasistaticSolve, ConvergesQuadraticallyNearRest) {
   MPI_Barrier(PETSC_COMM_WORLD);
   if (rank_of(PETSC_COMM_WORLD) == 0) std::filesystem::remove(file);
   ASSERT_GE(norms.size(), 4U);
-  double best = 0;
+  double last = 0;
   for (std::size_t k = 2; k < norms.size(); ++k) {
     const double order = std::log(norms[k] / norms[k - 1]) / std::log(norms[k - 1] / norms[k - 2]);
     if (rank_of(PETSC_COMM_WORLD) == 0)
       std::printf("residual %.3e after %.3e: order %.2f\n", norms[k], norms[k - 1], order);
     // Both ratios from where Newton's theory holds to where rounding begins.
-    const bool in_range = norms[k - 1] < 1e-2 * norms[0] && norms[k] > 1e-13 * norms[0];
-    if (in_range) best = std::max(best, order);
+    const bool in_range = norms[k - 2] < 1e-2 * norms[0] && norms[k] > 1e-13 * norms[0];
+    if (in_range) last = order;
   }
-  test::verify("quasistatic: order of convergence near rest, bent bar", "2", best, ">= 1.8");
-  EXPECT_GE(best, 1.8);
+  test::verify("quasistatic: order of convergence near rest, bent bar", "2", last, ">= 1.8");
+  EXPECT_GE(last, 1.8);
 }
 
 TEST_F(QuasistaticSolve, AgreesWithTheDampedMotion) {
@@ -112,6 +113,22 @@ TEST_F(QuasistaticSolve, IsTheSameOnAnyNumberOfRanks) {
       test::largest_difference(test::gathered(alone.simulation->mesh(), alone.simulation->positions()),
                                test::gathered(together.simulation->mesh(), together.simulation->positions())),
       1e-8);
+}
+
+/// What does not converge at once is applied in parts, none of them tried twice.
+TEST_F(QuasistaticSolve, HalvesALoadThatIsTooMuch) {
+  const test::Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
+  auto whole = test::build(bar, {"gravity=[0, -40, 0]"});
+  EXPECT_TRUE(whole.simulation->step_to(1).notes.empty());
+  const test::Options few{{"-quasistatic_snes_max_it", "6"}};
+  auto halved = test::build(bar, {"gravity=[0, -40, 0]"});
+  const auto notes = halved.simulation->step_to(1).notes;
+  EXPECT_FALSE(notes.empty());
+  EXPECT_EQ(std::set(notes.begin(), notes.end()).size(), notes.size());
+  EXPECT_LE(
+      test::largest_difference(test::gathered(whole.simulation->mesh(), whole.simulation->positions()),
+                               test::gathered(halved.simulation->mesh(), halved.simulation->positions())),
+      1e-5);
 }
 
 TEST_F(QuasistaticSolve, HeldNodesCarryTheWeight) {

@@ -27,38 +27,33 @@ events:
   - {at: 0.02, set: bodies.ball.material.youngs_modulus, to: 8.0e4}
 )";
 
-std::vector<double> after_steps(Simulation& simulation, int steps) {
-  for (int step = 0; step < steps; ++step) simulation.step(simulation.suggested_time_step());
-  return test::gathered(simulation.mesh(), simulation.positions());
-}
-
 TEST(RanksAgree, PositionsAfter200StepsEqualThoseOfOneRank) {
-  const auto alone = after_steps(*test::build(falling_ball, {}, PETSC_COMM_SELF).simulation, 200);
+  const auto alone = test::after_steps(*test::build(falling_ball, {}, PETSC_COMM_SELF).simulation, 200);
   auto scene = test::build(falling_ball);
-  const auto together = after_steps(*scene.simulation, 200);
+  const auto together = test::after_steps(*scene.simulation, 200);
   EXPECT_LE(test::largest_difference(alone, together), 1e-9 * 0.4);
   EXPECT_GT(norm(scene.simulation->measure().contact_impulse), 0) << "the scene must collide";
 }
 
 TEST(RanksAgree, TwoRunsAreBitwiseEqual) {
-  EXPECT_EQ(after_steps(*test::build(falling_ball).simulation, 100),
-            after_steps(*test::build(falling_ball).simulation, 100));
+  EXPECT_EQ(test::after_steps(*test::build(falling_ball).simulation, 100),
+            test::after_steps(*test::build(falling_ball).simulation, 100));
 }
 
 TEST(RanksAgree, ARestoredRunIsBitwiseEqual) {
   auto whole = test::build(falling_ball);
-  after_steps(*whole.simulation, 37);
+  test::after_steps(*whole.simulation, 37);
   const auto& running = *whole.simulation;
   const auto [x, v, changes] = running.node_state();
   const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
       kept_changes(changes.begin(), changes.end());
   const auto scalars = running.state_scalars();
-  const auto uninterrupted = after_steps(*whole.simulation, 100);
+  const auto uninterrupted = test::after_steps(*whole.simulation, 100);
 
   auto restarted = test::build(falling_ball);
   restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
   EXPECT_EQ(restarted.simulation->steps(), 37);
-  EXPECT_EQ(after_steps(*restarted.simulation, 100), uninterrupted);
+  EXPECT_EQ(test::after_steps(*restarted.simulation, 100), uninterrupted);
 }
 
 }  // namespace

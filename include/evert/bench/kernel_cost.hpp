@@ -18,14 +18,13 @@ struct KernelCost {
 // and damping state, a number once, and twice where it is written, because its cache line is read first.
 // Those of the nodes, which cells share, are nodal_bytes.
 
-/// ElasticForces::update of neo-Hookean cells.
-[[nodiscard]] KernelCost force_cost(CellType type, DampingModel damping);
-/// The same of tet4 or hex8, without damping, of any model.
-[[nodiscard]] KernelCost force_cost(CellType type, const Material& material);
-/// The same of hexahedra on the path of models that need U and V.
+/// ElasticForces::update.
+[[nodiscard]] KernelCost force_cost(CellType type, const Material& material,
+                                    DampingModel damping = DampingModel::none);
+/// The same of neo-Hookean hexahedra on the path of models that need U and V.
 [[nodiscard]] KernelCost general_path_cost();
-/// ElasticForces::add_damping, `rotated`, tet4.
-[[nodiscard]] KernelCost damping_cost();
+/// ElasticForces::add_damping.
+[[nodiscard]] KernelCost damping_cost(CellType type, DampingModel damping);
 /// U, σ and V from F in memory; the result stays in a cache.
 [[nodiscard]] KernelCost svd_cost();
 

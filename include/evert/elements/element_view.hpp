@@ -48,6 +48,9 @@ class ElementView {
     static_assert(nodes <= most_nodes && points <= most_points, "raise most_nodes or most_points");
   }
 
+  template <int nodes, int points>
+  ElementView(const ReferenceElement<nodes, points>&&) = delete;  // refers to what will be gone
+
   [[nodiscard]] CellType type() const { return type_; }
   [[nodiscard]] std::size_t nodes() const { return nodes_; }
   [[nodiscard]] std::size_t points() const { return points_; }

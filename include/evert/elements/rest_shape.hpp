@@ -14,6 +14,11 @@ namespace evert {
 [[nodiscard]] Mat3d rest_jacobian(const ElementView& element, std::size_t q, std::span<const LocalIndex> cell,
                                   std::span<const Vec3d> rest_positions);
 
+/// |∂X/∂ξ| W there [m³].
+[[nodiscard]] inline double point_volume(const ElementView& element, std::size_t q, const Mat3d& jacobian) {
+  return element.weight(q) * determinant(jacobian);
+}
+
 /// The rotation Q that makes Qᵀ v_j triangular, of the vectors in the columns of `first_vectors`. To
 /// rounding, whatever their lengths and angles.
 [[nodiscard]] Mat3d triangular_frame(const Mat3d& first_vectors);
@@ -31,12 +36,12 @@ class RestVectors {
   }
   /// Q of the cell: how it is turned.
   [[nodiscard]] Mat3d frame() const {
-    return element_.points() == 1 ? triangular_frame({(*this)[0], (*this)[1], (*this)[2]})
-                                  : identity<double>();
+    const bool turned = rest_layout(kind_, element_.nodes(), element_.points()).triangular;
+    return turned ? triangular_frame({(*this)[0], (*this)[1], (*this)[2]}) : identity<double>();
   }
 
  private:
-  const ElementView& element_;
+  ElementView element_;
   ShapeData kind_;
   std::size_t point_;
   Mat3d inverse_jacobian_;

@@ -39,7 +39,8 @@ class CellNodes {
 /// What ∂P/∂F a stiffness matrix is made of.
 enum class TangentForm {
   full,       ///< as it is
-  projected,  ///< the nearest positive semidefinite one of every point: a Newton step on it descends
+  projected,  ///< a positive semidefinite one not below it at every point, of isotropic models the
+              ///< nearest: a Newton step on it descends
 };
 
 /// Takes the dense matrix of one cell, row-major 3n×3n, which lasts for the call. `cell` counts as in
@@ -60,6 +61,10 @@ class ElasticBlock {
   /// C(x) needs (9 numbers a point for `rotated`; nothing without damping).  paper A, sections 3-6
   virtual void update(const double* x, double* f, BatchRange batches) = 0;
 
+  /// What the block was made of, with the parameters of the moment.
+  [[nodiscard]] virtual CellType type() const = 0;
+  [[nodiscard]] virtual const Material& material() const = 0;
+  [[nodiscard]] virtual const Damping& damping() const = 0;
   [[nodiscard]] virtual bool damped() const = 0;
   /// out += factor · C v with C from the last update (symmetric positive semidefinite).  paper A, section 6.2
   virtual void add_damping(const double* v, double* out, double factor, BatchRange batches) const = 0;

@@ -35,8 +35,10 @@ class EquilibriumSolver {
   };
   /// Collective. From a state `x` of (nearly) rest, takes held components by the ways [m] that `held`
   /// prescribes and finds x with P (f(x) − withheld) = 0, loads being those of time `t` [s]. `x` is then a
-  /// state of rest when converged, and where it was otherwise.
-  Outcome solve(NodeField& x, std::span<const NodeConstraint> held, const NodeField& withheld, double t);
+  /// state of rest when converged, and where it was otherwise. `-quasistatic_snes_rtol` counts from the first
+  /// residual or from `load` [N], the norm of what all parts of a step apply, whichever is larger.
+  Outcome solve(NodeField& x, std::span<const NodeConstraint> held, const NodeField& withheld, double load,
+                double t);
 
  private:
   friend struct EquilibriumCallbacks;
@@ -49,7 +51,7 @@ class EquilibriumSolver {
   double predict();
   [[nodiscard]] double inertia(Vec residual) const;
   [[nodiscard]] TangentForm next_form();
-  SNESConvergedReason iterate(Outcome& outcome);
+  SNESConvergedReason iterate(double target, Outcome& outcome);
 
   const System& system_;
   TangentChoice choice_;
@@ -59,11 +61,13 @@ class EquilibriumSolver {
   StiffnessMatrix stiffness_;
   SnesHandle snes_;
   double atol_ = 0, rtol_ = 0;
+  PetscInt most_iterations_ = 0;
 
   // Of the solve that goes on:
   std::span<const NodeConstraint> held_;
   NodeField trial_, force_, load_;  // load_: loads less what is withheld
-  VecHandle x_, base_, base_residual_, work_;
+  NodeField pull_;                  // of the ways of held nodes on the others
+  VecHandle x_, function_, base_, base_residual_, work_, slope_, right_, change_;
   double base_energy_ = 0;
   double least_inertia_ = 0;  // σ [1/s²] that keeps rigid motions of free bodies within rounding
   double full_below_ = 0;     // the full tangent is for residuals below [N]

@@ -17,6 +17,8 @@ class NodeMatrix {
   NodeMatrix(const DistributedMesh& mesh, const ElasticForces& elastic, const char* type,
              const std::function<bool(const ElasticBlock&)>& takes_part);
 
+  /// Collective. What solvers may count on, until told otherwise; any matrix here is symmetric.
+  void declare_positive_definite(bool is);
   /// Collective.
   void begin();
   /// Not collective. Adds the dense row-major `matrix` of the nodes `cell` (local numbers).
@@ -35,6 +37,7 @@ class NodeMatrix {
   [[nodiscard]] GlobalIndex global_number(PetscInt local) const;
 
   const DistributedMesh& mesh_;
+  bool knows_spd_ = false;
   bool upper_only_;             // sbaij stores the upper triangle
   std::vector<PetscInt> rows_;  // scratch: the nodes to add at
   MatHandle mat_;

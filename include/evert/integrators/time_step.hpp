@@ -20,6 +20,8 @@ class TimeStepControl {
   /// nothing where the stresses of the state overflow.
   [[nodiscard]] double suggest(System& system);
 
+  /// The last suggestion rests on an estimate of its own.
+  [[nodiscard]] bool is_fresh() const { return age_ == 1; }
   /// Forget the last estimate (a material has changed).
   void reset() { age_ = never; }
   /// How long the last estimate may be used at most [s].

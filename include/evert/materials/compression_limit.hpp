@@ -23,6 +23,33 @@ EVERT_ALWAYS_INLINE Vec3<T> evaluated_stretches(const Vec3<T>& sigma, double lim
                            extension == Extension::clamp ? limit : -std::numeric_limits<double>::infinity());
 }
 
+/// What such a model is made of, with c = max(σ, limit) and d = σ − c.
+template <class T>
+struct LimitedTerms {
+  Vec3<T> sigma;  ///< the stretches evaluated at
+  Vec3<T> c;
+  Vec3<T> inverse;  ///< 1/c_i
+  Vec3<T> ratio;    ///< d_i/c_i
+  T volume;         ///< c_1 c_2 c_3
+};
+
+/// One division for the three inverses.
+template <class T>
+EVERT_ALWAYS_INLINE LimitedTerms<T> limited_terms(const Vec3<T>& stretches, double limit,
+                                                  Extension extension) {
+  const Vec3<T> sigma = evaluated_stretches(stretches, limit, extension);
+  const Vec3<T> c = limited_stretches(sigma, limit);
+  const T c01 = c[0] * c[1];
+  const T volume = c01 * c[2];
+  const T inverse_volume = T(1.0) / volume;
+  const Vec3<T> inverse{inverse_volume * (c[1] * c[2]), inverse_volume * (c[0] * c[2]), inverse_volume * c01};
+  return {sigma,
+          c,
+          inverse,
+          {(sigma[0] - c[0]) * inverse[0], (sigma[1] - c[1]) * inverse[1], (sigma[2] - c[2]) * inverse[2]},
+          volume};
+}
+
 /// How the limited stretches c = max(σ, limit) and the rest d = σ − c of two axes differ, per difference of
 /// σ.
 template <class T>

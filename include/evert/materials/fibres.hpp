@@ -8,6 +8,13 @@
 /// ψ_fibre(Λ), Λ = |F a|.  paper A, section 6.1; PHYSICS 3
 namespace evert {
 
+/// T/Λ [Pa] at a stretch Λ: the fibres add (T/Λ) F a aᵀ to P. One that has no length left has no tension
+/// either.
+template <class Model, class T>
+EVERT_ALWAYS_INLINE T fibre_pull(const Model& model, const T& stretch) {
+  return model.fibre_tension(stretch) / max(stretch, T(1e-30));
+}
+
 /// A model at a point where the unit vector `direction` is that of the fibres at rest. With b = Vᵀa,
 ///
 ///   P̂ = diag(P̂_matrix) + F̂ (T/Λ) b bᵀ,  T = dψ_fibre/dΛ
@@ -27,9 +34,7 @@ struct AlongFibre {
   /// P̂ = Uᵀ P V [Pa].
   EVERT_ALWAYS_INLINE Mat3<T> stress_in_frames(const Svd3<T>& svd) const {
     const Vec3<T> b = in_frame(svd);
-    const T length = stretch(svd.sigma, b);
-    // A fibre that has no length left has no tension either.
-    const T pull = model.fibre_tension(length) / max(length, T(1e-30));
+    const T pull = fibre_pull(model, stretch(svd.sigma, b));
     return diagonal(model.matrix().principal_stress(svd.sigma)) + outer(pull * stretched(svd.sigma, b), b);
   }
 

@@ -149,15 +149,8 @@ struct MooneyRivlin {
 
   template <class T>
   EVERT_ALWAYS_INLINE Terms<T> terms(const Vec3<T>& stretches) const {
-    const Vec3<T> sigma = evaluated_stretches(stretches, compression_limit, extension);
-    const Vec3<T> c = limited_stretches(sigma, compression_limit);
-    const T c01 = c[0] * c[1];
-    const T volume = c01 * c[2];
-    const T inverse_volume = T(1.0) / volume;
-    const Vec3<T> inverse{inverse_volume * (c[1] * c[2]), inverse_volume * (c[0] * c[2]),
-                          inverse_volume * c01};
-    const auto third_along = [&](std::size_t i) { return T(2.0 / 3) * ((sigma[i] - c[i]) * inverse[i]); };
-    const Vec3<T> third{third_along(0), third_along(1), third_along(2)};
+    const auto [sigma, c, inverse, ratio, volume] = limited_terms(stretches, compression_limit, extension);
+    const Vec3<T> third = T(2.0 / 3) * ratio;
     const T log_of_limited = log(volume);
     const T root = exp(T(-1.0 / 3) * log_of_limited);
     const Vec3<T> square{c[0] * c[0], c[1] * c[1], c[2] * c[2]};

@@ -97,16 +97,7 @@ struct NeoHookean {
 
   template <class T>
   EVERT_ALWAYS_INLINE Logarithms<T> logarithms(const Vec3<T>& stretches) const {
-    const Vec3<T> sigma = evaluated_stretches(stretches, compression_limit, extension);
-    const Vec3<T> c = limited_stretches(sigma, compression_limit);
-    // One division for the three inverses, one logarithm for the three stretches.
-    const T c01 = c[0] * c[1];
-    const T volume = c01 * c[2];
-    const T inverse_volume = T(1.0) / volume;
-    const Vec3<T> inverse{inverse_volume * (c[1] * c[2]), inverse_volume * (c[0] * c[2]),
-                          inverse_volume * c01};
-    const auto ratio_along = [&](int i) { return (sigma[i] - c[i]) * inverse[i]; };
-    const Vec3<T> ratio{ratio_along(0), ratio_along(1), ratio_along(2)};
+    const auto [sigma, c, inverse, ratio, volume] = limited_terms(stretches, compression_limit, extension);
     return {sigma, inverse, ratio, log(volume) + (ratio[0] + ratio[1] + ratio[2])};
   }
 };

@@ -250,27 +250,13 @@ struct ConstraintConfig {
 
 // --- events
 
-enum class EventTarget {
-  youngs_modulus,
-  poissons_ratio,
-  lambda,
-  mu,
-  stiffness_proportional,
-  stiffness_ratio,
-  alpha,
-  beta,
-  mass_proportional,
-  mass_ratio,
-  frequency,
-  gravity,
-  friction
-};
+enum class EventTarget { material, damping, gravity, friction };
 
 /// A value that changes at a time. Listed in order of time (the scene's order among equals).
 struct EventConfig {
   double at = 0;    ///< [s]
   std::string set;  ///< as written: bodies.torus.material.youngs_modulus
-  EventTarget target = EventTarget::youngs_modulus;
+  EventTarget target = EventTarget::material;
   std::size_t owner = 0;             ///< index into bodies; into obstacles for friction; unused for gravity
   std::optional<std::size_t> group;  ///< index into BodyConfig::groups when the target lies in a group
   double value = 0;                  ///< unless gravity

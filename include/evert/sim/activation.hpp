@@ -16,6 +16,8 @@ struct Activation {
   std::vector<ActivationKeyframe> keyframes;  ///< linear in between, constant outside; not empty, times rise
 
   [[nodiscard]] double at(double time) const;
+  /// The first time of a keyframe after `time`; infinity after the last.
+  [[nodiscard]] double next_keyframe(double time) const;
   /// How far it rises above its value at `time`, at most, until `end`.
   [[nodiscard]] double rise(double time, double end) const;
 };

@@ -54,7 +54,7 @@ class Simulation {
   /// The largest step that is stable and accurate now [s], infinity where nothing limits it (as in a
   /// quasistatic simulation); the fixed step where the scene names one.
   [[nodiscard]] double suggested_time_step();
-  /// The time of the next event [s], or infinity. Not collective.
+  /// The time of the next event or keyframe of an activation [s], or infinity. Not collective.
   [[nodiscard]] double next_event() const;
 
   /// True where the steps are states of rest.
@@ -100,6 +100,8 @@ class Simulation {
   void refresh_forces();
   /// Gives muscle the activation that it has at `time` [s], for the forces to be computed next.
   void activate(double time);
+  /// Gives it the highest that it will have from now to `until` [s], for a bound.
+  void activate_highest(double until);
   /// True when muscle may become much stiffer within `duration` [s].
   [[nodiscard]] bool activation_rises(double duration) const;
   StepReport advance(double dt);

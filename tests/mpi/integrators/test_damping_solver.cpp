@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/petsc_options.hpp"
 #include <cmath>
 #include <memory>
 #include <random>
@@ -13,20 +14,6 @@
 
 namespace evert {
 namespace {
-
-/// An option in PETSc's database for the life of the object.
-class Option {
- public:
-  Option(std::string name, const std::string& value) : name_(std::move(name)) {
-    check(PetscOptionsSetValue(nullptr, name_.c_str(), value.c_str()));
-  }
-  ~Option() { static_cast<void>(PetscOptionsClearValue(nullptr, name_.c_str())); }
-  Option(const Option&) = delete;
-  Option& operator=(const Option&) = delete;
-
- private:
-  std::string name_;
-};
 
 /// A deformed, damped box and a velocity; the same for any number of ranks.
 class DampedBox : public testing::Test {
@@ -94,9 +81,9 @@ struct Choice {
 class EveryOperator : public DampedBox, public testing::WithParamInterface<Choice> {};
 
 TEST_P(EveryOperator, SolvesWithTheConstraintsHeldExactly) {
-  const Option mat("-damping_mat_type", GetParam().mat_type);
-  const Option pc("-damping_pc_type", GetParam().pc_type);
-  const Option tolerance("-damping_ksp_rtol", "1e-11");
+  const test::Options mat{{"-damping_mat_type", GetParam().mat_type}};
+  const test::Options pc{{"-damping_pc_type", GetParam().pc_type}};
+  const test::Options tolerance{{"-damping_ksp_rtol", "1e-11"}};
   DampingSolver solver(mesh_, elastic_);
   const auto held = constraints();
   const double s = 0.01;
@@ -115,9 +102,9 @@ TEST_P(EveryOperator, SolvesWithTheConstraintsHeldExactly) {
 }
 
 TEST_P(EveryOperator, SolvesAgainAfterTheMaterialMoved) {
-  const Option mat("-damping_mat_type", GetParam().mat_type);
-  const Option pc("-damping_pc_type", GetParam().pc_type);
-  const Option tolerance("-damping_ksp_rtol", "1e-11");
+  const test::Options mat{{"-damping_mat_type", GetParam().mat_type}};
+  const test::Options pc{{"-damping_pc_type", GetParam().pc_type}};
+  const test::Options tolerance{{"-damping_ksp_rtol", "1e-11"}};
   DampingSolver solver(mesh_, elastic_);
   solver.solve(0.01, right_.get(), v_, {});
   for (auto& value : x_.owned()) value *= 1.3;
@@ -213,7 +200,7 @@ TEST_F(DampedBox, DiagonalOfTheShellIsThatOfTheMatrix) {
 }
 
 TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
-  const Option tolerance("-damping_ksp_rtol", "1e-13");
+  const test::Options tolerance{{"-damping_ksp_rtol", "1e-13"}};
   DampingSolver solver(mesh_, elastic_);
   const auto held = constraints();
   solver.solve(0.01, right_.get(), v_, held);
@@ -236,7 +223,7 @@ TEST_F(DampedBox, ReactionIsWhatTheConstraintsExert) {
 }
 
 TEST_F(DampedBox, RefiningIsSolvingAgain) {
-  const Option tolerance("-damping_ksp_rtol", "1e-13");
+  const test::Options tolerance{{"-damping_ksp_rtol", "1e-13"}};
   DampingSolver solver(mesh_, elastic_);
   const auto held = constraints();
   solver.solve(0.01, right_.get(), v_, {});
@@ -280,10 +267,10 @@ TEST_F(DampedBox, WithoutDampingTheSolveIsADivision) {
 
 TEST_F(DampedBox, OptionsThatCannotWorkAreUserErrors) {
   {
-    const Option mat("-damping_mat_type", "bajj");
+    const test::Options mat{{"-damping_mat_type", "bajj"}};
     EXPECT_THROW(DampingSolver(mesh_, elastic_), UserError);
   }
-  const Option pc("-damping_pc_type", "gamg");
+  const test::Options pc{{"-damping_pc_type", "gamg"}};
   EXPECT_THROW(DampingSolver(mesh_, elastic_), UserError);
 }
 

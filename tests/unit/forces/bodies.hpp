@@ -7,6 +7,8 @@
 #include "evert/mesh/partition.hpp"
 #include "evert/mesh/quadratic.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -216,6 +218,11 @@ inline std::string name_of(const Material& material) {
       material);
 }
 
+/// The stress of `clamp` is the gradient of nothing.
+inline bool has_a_potential(const Material& material) {
+  return name_of(material).find("clamp") == std::string::npos;
+}
+
 inline constexpr Damping rotated_damping{DampingModel::rotated, 30, 20};
 inline constexpr Damping objective_damping{DampingModel::objective, 30, 20};
 inline constexpr Damping blended_damping{DampingModel::blended, 30, 20};
@@ -260,19 +267,49 @@ inline NodalValues damping_product(const ElasticBlock& block, const NodalValues&
   return out;
 }
 
+/// The largest entry, without the slack.
+inline double largest(const NodalValues& values) {
+  double most = 0;
+  for (std::size_t i = 0; i + 1 < values.size(); ++i) most = std::max(most, std::abs(values[i]));
+  return most;
+}
+
+/// f = −∂E/∂x, every component, by central differences of `energy(x)`.
+template <class Energy>
+void expect_gradient(const NodalValues& f, const Energy& energy, NodalValues x, const std::string& label) {
+  constexpr double h = 1e-6;
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    const double at = x[i];
+    x[i] = at + h;
+    const double forward = energy(x);
+    x[i] = at - h;
+    const double backward = energy(x);
+    x[i] = at;
+    EXPECT_NEAR(-(forward - backward) / (2 * h), f[i], 1e-7 * largest(f)) << label << ", component " << i;
+  }
+}
+
+/// Inner forces add up to nothing, and turn nothing.
+inline void expect_balance(const NodalValues& x, const NodalValues& f, const std::string& label) {
+  Vec3d sum{}, torque{};
+  double arm = 0;
+  const std::size_t nodes = x.size() / 3;
+  for (std::size_t node = 0; node < nodes; ++node) {
+    sum += at_node(f, node);
+    torque += cross(at_node(x, node), at_node(f, node));
+    arm = std::max(arm, norm(at_node(x, node)));
+  }
+  const double rounding = 1e-13 * largest(f) * static_cast<double>(nodes);
+  EXPECT_LE(norm(sum), rounding) << label;
+  EXPECT_LE(norm(torque), (arm + 1e-3) * rounding) << label;
+}
+
 /// Both halves of the symmetric diagonal blocks of `nodes` nodes, one behind the other.
 inline NodalValues damping_diagonal(const ElasticBlock& block, std::size_t nodes) {
   const std::size_t half = 3 * nodes + 1;
   NodalValues blocks(2 * half, 0.0);
   block.add_damping_diagonal(blocks.data(), blocks.data() + half, 1);
   return blocks;
-}
-
-/// The largest entry, without the slack.
-inline double largest(const NodalValues& values) {
-  double most = 0;
-  for (std::size_t i = 0; i + 1 < values.size(); ++i) most = std::max(most, std::abs(values[i]));
-  return most;
 }
 
 inline double largest_difference(const NodalValues& a, const NodalValues& b) {

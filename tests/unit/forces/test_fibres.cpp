@@ -44,19 +44,8 @@ TEST(Fibres, ForcesOfActiveMuscleHaveNoResultantAndNoTorque) {
   for_each_muscle([](const Body& body, double activation) {
     const auto block =
         make_elastic_block(body.elastic_cells(), body.rest, active_muscle(activation), no_damping);
-    for (const State& state : awkward_states(body)) {
-      const NodalValues f = forces(*block, state.x);
-      Vec3d sum{}, torque{};
-      double arm = 0;
-      for (std::size_t node = 0; node < body.rest.size(); ++node) {
-        sum += at_node(f, node);
-        torque += cross(at_node(state.x, node), at_node(f, node));
-        arm = std::max(arm, norm(at_node(state.x, node)));
-      }
-      const double rounding = 1e-13 * largest(f) * static_cast<double>(body.rest.size());
-      EXPECT_LE(norm(sum), rounding) << label(body, activation, state);
-      EXPECT_LE(norm(torque), (arm + 1e-3) * rounding) << label(body, activation, state);
-    }
+    for (const State& state : awkward_states(body))
+      expect_balance(state.x, forces(*block, state.x), label(body, activation, state));
   });
 }
 

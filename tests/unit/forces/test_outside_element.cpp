@@ -57,20 +57,9 @@ TEST(OutsideElement, HasTheForcesOfTheHexahedronWhereFIsConstant) {
 TEST(OutsideElement, IsTheGradientOfItsEnergyOnDistortedCells) {
   const Body body = box(CellType::hex8, 2, 1, 1);
   const auto toy = toy_block<Pack>(body, no_damping);
-  for (State& state : awkward_states(body)) {
-    if (!state.unique) continue;
-    const NodalValues f = forces(*toy, state.x);
-    const double h = 1e-6;
-    for (std::size_t i = 0; i + 1 < state.x.size(); ++i) {
-      const double at = state.x[i];
-      state.x[i] = at + h;
-      const double forward = toy->energy(state.x.data());
-      state.x[i] = at - h;
-      const double backward = toy->energy(state.x.data());
-      state.x[i] = at;
-      EXPECT_NEAR(-(forward - backward) / (2 * h), f[i], 1e-7 * largest(f)) << state.name;
-    }
-  }
+  const auto energy = [&](const NodalValues& x) { return toy->energy(x.data()); };
+  for (const State& state : awkward_states(body))
+    if (state.unique) expect_gradient(forces(*toy, state.x), energy, state.x, state.name);
 }
 
 TEST(OutsideElement, SharesItsMass) {

@@ -230,9 +230,13 @@ TEST(StableStep, IsABoundAtEveryState) {
                   largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
       const double bound = block->stable_step(x.data()).undamped;
       EXPECT_LE(bound, exact * 1.001) << name_of(material) << ", squashed to " << squash;
-      // Not wildly below either; with `clamp` it is that of the clamped stretches, stiffer than the force is.
-      EXPECT_GE(bound, exact / (name_of(material).ends_with("clamp") ? 8 : 5))
-          << name_of(material) << ", " << squash;
+      // Not wildly below either. With `clamp` it is that of the clamped stretches, stiffer than the force is;
+      // stable_neo_hookean has states of little stiffness in which the parts that are bounded one by one
+      // nearly cancel (4.05 found).
+      const double slack = name_of(material).ends_with("clamp")                 ? 8
+                           : std::holds_alternative<StableNeoHookean>(material) ? 5
+                                                                                : 4;
+      EXPECT_GE(bound, exact / slack) << name_of(material) << ", " << squash;
     }
   }
 }

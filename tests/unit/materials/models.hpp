@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/materials/material.hpp"
+#include "evert/materials/stress_measures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -88,6 +89,35 @@ inline Mat3d random_rotation(std::mt19937_64& random) {
   return {{{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
             {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
             {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}}};
+}
+
+/// P of the Mooney-Rivlin model above its limit, also of one that is the matrix of fibres, by its Cauchy
+/// stress: J σ = 2 dev(μ10 B̄ + μ01 (Ī1 B̄ − B̄²)) + κ ln J, B̄ = J^(−2/3) F Fᵀ.
+template <class Model>
+Mat3d textbook_mooney_rivlin(const Model& model, const Mat3d& f) {
+  const double mu_01 = 0.5 * model.lame.mu * model.share_01, mu_10 = 0.5 * model.lame.mu - mu_01;
+  const double j = determinant(f);
+  const Mat3d b = std::pow(j, -2.0 / 3) * times_transpose(f, f);
+  const Mat3d shape = mu_10 * b + mu_01 * (trace(b) * b - b * b);
+  const Mat3d kirchhoff = 2.0 * (shape - trace(shape) / 3 * identity<double>()) +
+                          model.lame.bulk_modulus() * std::log(j) * identity<double>();
+  return first_piola_kirchhoff_from_cauchy(f, (1 / j) * kirchhoff);
+}
+
+/// Half of them inverted; one in ten flat if asked for.
+inline std::vector<Mat3d> random_gradients(int count, bool some_flat = false) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> entry(-1.5, 1.5);
+  std::vector<Mat3d> all;
+  for (int i = 0; i < count; ++i) {
+    Mat3d f;
+    for (auto& column : f.column)
+      for (double& x : column.components) x = entry(random);
+    if ((determinant(f) < 0) != (i % 2 == 0)) f.column[0] = -f.column[0];
+    if (some_flat && i % 10 == 0) f.column[2] = f.column[0] - 0.5 * f.column[1];
+    all.push_back(f);
+  }
+  return all;
 }
 
 }  // namespace evert::test

@@ -92,13 +92,8 @@ TYPED_TEST_SUITE(Tangents, Models);
 TYPED_TEST(Tangents, AreDerivativesAtRandomF) {
   const auto model = make<TypeParam>();
   std::mt19937_64 random(17);
-  std::uniform_real_distribution<double> entry(-1.5, 1.5);
   int inverted = 0, tested = 0;
-  for (int i = 0; i < 10000; ++i) {
-    Mat3d f;
-    for (auto& column : f.column)
-      for (double& x : column.components) x = entry(random);
-    if ((determinant(f) < 0) != (i % 2 == 0)) f.column[0] = -f.column[0];
+  for (const Mat3d& f : random_gradients(10000)) {
     const Vec3d sigma = svd3(f).sigma;
     if (!is_smooth_at<TypeParam>(sigma) || !is_away_from_kinks(model, sigma)) continue;
     ++tested;

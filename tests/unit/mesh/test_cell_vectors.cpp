@@ -228,6 +228,12 @@ TEST_F(CellVectors, name_the_place_of_what_is_wrong) {
                     {"b.msh:4:", "before $Elements"});
 }
 
+TEST_F(CellVectors, before_the_cells_are_skipped_where_none_are_wanted) {
+  std::string moved(gmsh22);
+  moved.insert(moved.find("$Elements"), fibres);
+  EXPECT_FALSE(read_mesh(file("early.msh", moved)).cells.empty());
+}
+
 TEST_F(CellVectors, stay_when_tetrahedra_become_quadratic) {
   auto mesh = read_mesh(file("a.msh", joined({gmsh22, fibres})), "fibres");
   const auto before = mesh.block(CellType::tet4)->vectors;

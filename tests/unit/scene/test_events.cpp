@@ -30,10 +30,11 @@ TEST(Events, find_every_target) {
       "  - {at: 0, set: obstacles.ball.friction, to: 8}\n");
   ASSERT_EQ(scene.events.size(), 8U);
   const auto& e = scene.events;
-  EXPECT_EQ(e[0].target, EventTarget::youngs_modulus);
+  EXPECT_EQ(e[0].target, EventTarget::material);
   EXPECT_EQ(e[0].owner, 0U);
   EXPECT_FALSE(e[0].group);
-  EXPECT_EQ(e[1].target, EventTarget::poissons_ratio);
+  EXPECT_EQ(e[1].target, EventTarget::material);
+  EXPECT_EQ(e[2].target, EventTarget::damping);
   EXPECT_EQ(e[1].owner, 1U);
   EXPECT_EQ(e[1].value, 0.2);
   EXPECT_EQ(e[5].group, 0U);
@@ -82,6 +83,22 @@ TEST(Events, change_the_moduli_that_a_material_is_given_by) {
   for (const auto& event : scene.events) apply_event(after, event);
   EXPECT_EQ(after.bodies[1].material.lambda, 3);
   EXPECT_EQ(after.bodies[1].material.mu, 4);
+}
+
+/// Each must fit what those before it, in time, have left.
+TEST(Events, are_checked_one_after_the_other) {
+  const auto text = changed(full_scene, "youngs_modulus: 0, poissons_ratio: 0", "lambda: 1e5, mu: 1e5");
+  const auto complaint_of = [&](const std::string& events) {
+    return testing::complaint(changed(text, present_event, events));
+  };
+  const std::string softer = "  - {at: 1, set: bodies.box.material.mu, to: 1e3}\n";
+  const std::string negative = "  - {at: 2, set: bodies.box.material.lambda, to: -1e4}\n";
+  const std::string wrong = "'-1e4' is not allowed: must be > -2/3 mu";
+  EXPECT_EQ(complaint_of(negative), "nothing");
+  EXPECT_NE(complaint_of(softer + negative).find(wrong), std::string::npos)
+      << complaint_of(softer + negative);
+  EXPECT_NE(complaint_of(negative + softer).find(wrong), std::string::npos)
+      << "whatever their order in the list";
 }
 
 TEST(Events, stand_in_order_of_time) {

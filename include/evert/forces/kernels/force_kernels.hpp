@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/forces/kernels/damping_kernels.hpp"
+#include "evert/forces/kernels/fibre_direction.hpp"
 #include "evert/forces/kernels/general_stress.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/materials/material.hpp"
@@ -42,6 +43,30 @@ EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches,
   });
 }
 
+/// −|∂X/∂ξ| W (T/Λ) F a of the fibres at every point of the run.  PHYSICS 3
+template <Real T, const auto& element, class Model>
+EVERT_STAGE void fibre_stage(const Model& model, const BlockArrays& block, BatchRange batches,
+                             const PointRun<T>& run, Vec3<T>* pulls) {
+  std::size_t i = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    const CellBatch<T, element> batch(block, b);
+    for (std::size_t q = 0; q < batch.points; ++q, ++i) {
+      const Vec3<T> now = run.deformation_gradient[i] * fibre_direction<T, element>(block, {b, q});
+      pulls[i] = (-batch.volume(q) * fibre_pull(model, sqrt(dot(now, now)))) * now;
+    }
+  }
+}
+
+/// The same with fibres: P = U P̂ Vᵀ + (T/Λ) F a aᵀ.
+template <Real T, const auto& element>
+EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches, const PointRun<T>& run,
+                                   const Vec3<T>* pulls, double* f) {
+  add_nodal_forces<T, element>(block, batches, f, [&](std::size_t i) {
+    return isotropic_tensor(run.left[i], run.plane[i], run.right[i], run.principal[i]) +
+           outer(pulls[i], fibre_direction<T, element>(block, place_of<element>(batches, i)));
+  });
+}
+
 /// The same of stresses that are there already.
 template <Real T, const auto& element>
 EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches, const FramedRun<T>& framed,
@@ -59,6 +84,11 @@ EVERT_ALWAYS_INLINE void add_forces(const Model& model, const BlockArrays& block
       FramedRun<T> framed;
       general_stress<T, element>(model, block, piece, run, points, framed);
       nodal_force_stage<T, element>(block, piece, framed, f);
+    } else if constexpr (HasFibres<Model>) {
+      typename PointRun<T>::template PerPoint<Vec3<T>> pulls;
+      principal_stress_stage<T, element>(model.matrix(), block, piece, run);
+      fibre_stage<T, element>(model, block, piece, run, pulls.data());
+      nodal_force_stage<T, element>(block, piece, run, pulls.data(), f);
     } else {
       principal_stress_stage<T, element>(model, block, piece, run);
       nodal_force_stage<T, element>(block, piece, run, f);

@@ -1,17 +1,16 @@
 #pragma once
-#include "evert/forces/kernels/point_model.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 
 #include <concepts>
 
-/// Stresses of models that need U and V: fibres, plastic flow, anything whose P̂ = Uᵀ P V is not diagonal.
+/// Stresses of models that need U and V: plastic flow, anything whose P̂ = Uᵀ P V is not diagonal.
 /// What a model offers decides at compile time; isotropic models never form U and V (force_kernels.hpp).
 namespace evert::kernels {
 
 /// The model offers, for one SVD over any scalar T, P̂ = Uᵀ P V [Pa], a full matrix, as
-/// `stress_in_frames(svd)`, and ψ [Pa] as `energy(svd)`; a model with fibres does so along a direction.
+/// `stress_in_frames(svd)`, and ψ [Pa] as `energy(svd)`.
 template <class Model>
-concept NeedsFrames = HasFibres<Model> || requires(const Model& model, const Svd3<double>& svd) {
+concept NeedsFrames = requires(const Model& model, const Svd3<double>& svd) {
   { model.stress_in_frames(svd) } -> std::same_as<Mat3d>;
   { model.energy(svd) } -> std::same_as<double>;
 };
@@ -52,8 +51,7 @@ EVERT_STAGE void framed_stress_stage(const Model& model, const BlockArrays& bloc
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const CellBatch<T, element> batch(block, b);
     for (std::size_t q = 0; q < batch.points; ++q, ++i)
-      framed.stress[i] =
-          -batch.volume(q) * model_at<T, element>(model, block, b, q).stress_in_frames(framed.svd[i]);
+      framed.stress[i] = -batch.volume(q) * model.stress_in_frames(framed.svd[i]);
   }
 }
 

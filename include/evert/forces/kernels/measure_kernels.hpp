@@ -2,6 +2,7 @@
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/damping_kernels.hpp"
 #include "evert/forces/kernels/fibre_bound.hpp"
+#include "evert/forces/kernels/fibre_direction.hpp"
 #include "evert/forces/kernels/general_stress.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/forces/kernels/tangent_bound.hpp"
@@ -30,22 +31,15 @@ EVERT_ALWAYS_INLINE double largest_lane(const T& x) {
   return -smallest_lane(-x);
 }
 
-/// Where point `i` of a run of `piece` stands in the block.
-struct PointPlace {
-  LocalIndex batch;
-  std::size_t q;
-};
-template <const auto& element>
-EVERT_ALWAYS_INLINE PointPlace place_of(BatchRange piece, std::size_t i) {
-  return {piece.begin + static_cast<LocalIndex>(i / element.points), i % element.points};
-}
-
 /// ψ at point i of a diagonalised run.
 template <Real T, const auto& element, class Model>
 EVERT_ALWAYS_INLINE T energy_density(const Model& model, const BlockArrays& block, const PointPlace& place,
                                      const PointRun<T>& run, std::size_t i) {
   if constexpr (NeedsFrames<Model>) {
-    return model_at<T, element>(model, block, place.batch, place.q).energy(assemble_svd3(run.deflation(i)));
+    return model.energy(assemble_svd3(run.deflation(i)));
+  } else if constexpr (HasFibres<Model>) {
+    const Vec3<T> now = run.deformation_gradient[i] * fibre_direction<T, element>(block, place);
+    return model.matrix().energy(principal_stretches(run.plane[i])) + model.fibre_energy(sqrt(dot(now, now)));
   } else {
     return model.energy(principal_stretches(run.plane[i]));
   }
@@ -268,7 +262,7 @@ template <Real T, const auto& element, class Model>
 EVERT_ALWAYS_INLINE TangentBound<T> bound_at(const Model& model, const BlockArrays& block,
                                              const PointPlace& place, const PointRun<T>& run, std::size_t i) {
   if constexpr (HasFibres<Model>) {
-    return tangent_bound(model_at<T, element>(model, block, place.batch, place.q),
+    return tangent_bound(model.along(fibre_direction<T, element>(block, place)),
                          assemble_svd3(run.deflation(i)), element.points);
   } else {
     return tangent_bound(model, principal_stretches(run.plane[i]), element.points);

@@ -155,7 +155,11 @@ using ShapeGradients = std::conditional_t<element.tensor_product, InverseJacobia
                                           NodeGradients<T, element, triangular>>;
 /// Of the rest shape.
 template <Real T, const auto& element>
-using RestGradients = ShapeGradients<T, element, element.points == 1>;
+using RestGradients = ShapeGradients<T, element,
+                                     rest_layout(element.tensor_product ? ShapeData::inverse_jacobian
+                                                                        : ShapeData::node_gradients,
+                                                 element.nodes, element.points)
+                                         .triangular>;
 /// Of the rest shape, turned and scaled.
 template <Real T, const auto& element>
 using TurnedGradients = ShapeGradients<T, element, false>;
