@@ -55,6 +55,7 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
   constraints_.clear();
   impulse_ = {};
   if (obstacles_.empty()) return;
+  for (const auto& obstacle : obstacles_) obstacle->move_to(step);
   const auto nodes = static_cast<LocalIndex>(masses_.size());
   auto fixed = prescribed.begin();
   for (LocalIndex node = 0; node < nodes; ++node) {
@@ -75,10 +76,10 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
 void Collisions::resolve_node(LocalIndex node, Vec3d& x, Vec3d& v, Vec3d predicted,
                               const StepInterval& step) {
   for (const auto& obstacle : obstacles_) {
-    const double distance = obstacle->signed_distance(x, step.end);
+    const double distance = obstacle->signed_distance(x);
     if (distance >= 0) continue;
-    const auto normal = obstacle->normal(x, step.end);
-    const auto body_velocity = obstacle->velocity(x, step.end);
+    const auto normal = obstacle->normal(x);
+    const auto body_velocity = obstacle->velocity(x);
     // The velocity: an inelastic impact, unless the node separates already.
     const auto relative = v - body_velocity;
     const double approach = std::max(0.0, -dot(relative, normal));

@@ -1,27 +1,35 @@
 #include "evert/contact/obstacle.hpp"
 
+#include <cmath>
+#include <utility>
+
 namespace evert {
+namespace {
 
-HalfSpace::HalfSpace(std::string name, double friction, const Vec3d& point, const Vec3d& normal,
-                     const Vec3d& velocity)
-    : Obstacle(std::move(name), friction),
-      point_(point),
-      normal_((1 / norm(normal)) * normal),
-      velocity_(velocity) {}
-
-double HalfSpace::signed_distance(const Vec3d& x, double t) const {
-  return dot(normal_, x - point_ - t * velocity_);
+/// Around the box of the body, which turns with it.
+Box3 in_world(const Box3& box, const RigidState& state) {
+  const auto center = 0.5 * (box.lower + box.upper), half = 0.5 * (box.upper - box.lower);
+  if (!std::isfinite(norm(half))) return Box3::everything();
+  Vec3d reach{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) reach[i] += std::abs(state.rotation(i, j)) * half[j];
+  const auto middle = state.to_world(center);
+  return {middle - reach, middle + reach};
 }
 
-Sphere::Sphere(std::string name, double friction, const Vec3d& center, double radius, const Vec3d& velocity)
-    : Obstacle(std::move(name), friction), center_(center), velocity_(velocity), radius_(radius) {}
+}  // namespace
 
-double Sphere::signed_distance(const Vec3d& x, double t) const { return norm(x - center_at(t)) - radius_; }
+Obstacle::Obstacle(std::string name, double friction, std::unique_ptr<ImplicitSurface> surface,
+                   std::unique_ptr<RigidMotion> motion)
+    : name_(std::move(name)), friction_(friction), surface_(std::move(surface)), motion_(std::move(motion)) {
+  move_to({.end = 0, .dt = 1});
+}
 
-Vec3d Sphere::normal(const Vec3d& x, double t) const {
-  const auto outward = x - center_at(t);
-  const double distance = norm(outward);
-  return distance > 0 ? (1 / distance) * outward : Vec3d{0, 1, 0};
+void Obstacle::move_to(const StepInterval& step) {
+  step_ = step;
+  before_ = motion_->at(step.end - step.dt);
+  now_ = motion_->at(step.end);
+  bounds_ = in_world(surface_->bounds(), now_);
 }
 
 }  // namespace evert

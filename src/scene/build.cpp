@@ -33,12 +33,17 @@ std::optional<double> mass_damping_of(const std::optional<DampingConfig>& config
 }
 
 std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config) {
-  if (const auto* plane = std::get_if<HalfSpaceConfig>(&config.shape))
-    return std::make_unique<HalfSpace>(config.name, config.friction, plane->point, plane->normal,
-                                       config.velocity);
-  const auto& sphere = std::get<SphereConfig>(config.shape);
-  return std::make_unique<Sphere>(config.name, config.friction, sphere.center, sphere.radius,
-                                  config.velocity);
+  std::unique_ptr<ImplicitSurface> surface;
+  RigidState start{.velocity = config.velocity};
+  if (const auto* plane = std::get_if<HalfSpaceConfig>(&config.shape)) {
+    surface = std::make_unique<HalfSpace>(plane->point, plane->normal);
+  } else {
+    const auto& sphere = std::get<SphereConfig>(config.shape);
+    surface = std::make_unique<Sphere>(sphere.radius);
+    start.origin = sphere.center;
+  }
+  return std::make_unique<Obstacle>(config.name, config.friction, std::move(surface),
+                                    std::make_unique<UniformMotion>(start));
 }
 
 PrescribedNodes prescribed_of(const ConstraintConfig& config, const LocalNodeSet& nodes) {

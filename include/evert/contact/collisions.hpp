@@ -11,12 +11,6 @@
 /// from the paper
 namespace evert {
 
-/// The end of the step that is being made.
-struct StepInterval {
-  double end = 0;  ///< [s]
-  double dt = 0;   ///< [s]
-};
-
 /// How far a solve is from Coulomb's law: sums over the contacts of a rank [N s].
 struct FrictionError {
   double excess = 0;   ///< of tangential impulses that are to change

@@ -1,24 +1,46 @@
 #pragma once
-#include "evert/math/vec3.hpp"
+#include "evert/contact/implicit_surface.hpp"
+#include "evert/contact/rigid_motion.hpp"
 
 #include <memory>
 #include <string>
 
-/// Rigid bodies that nodes collide with, as implicit surfaces.  paper A, section 9; PHYSICS 8
+/// Rigid bodies that nodes collide with: a shape, and how it moves.  paper A, section 9; PHYSICS 8
 namespace evert {
 
-/// A rigid body: φ < 0 inside. Thread- and rank-free: every rank holds all obstacles.
+/// A time step.
+struct StepInterval {
+  double end = 0;  ///< [s]
+  double dt = 0;   ///< [s]
+};
+
+/// A rigid body in the place that it has at the end of a step. Every rank holds all obstacles.
 class Obstacle {
  public:
-  Obstacle(std::string name, double friction) : name_(std::move(name)), friction_(friction) {}
-  virtual ~Obstacle() = default;
+  Obstacle(std::string name, double friction, std::unique_ptr<ImplicitSurface> surface,
+           std::unique_ptr<RigidMotion> motion);
 
-  /// Distance to the surface at time `t` [s], negative inside [m]; 1-Lipschitz in `x`.
-  [[nodiscard]] virtual double signed_distance(const Vec3d& x, double t) const = 0;
-  /// Unit outward normal ∇φ, defined everywhere (any unit vector where the gradient is not).
-  [[nodiscard]] virtual Vec3d normal(const Vec3d& x, double t) const = 0;
-  /// Velocity of the body's material at `x` [m/s].
-  [[nodiscard]] virtual Vec3d velocity(const Vec3d& x, double t) const = 0;
+  /// Takes the body to the end of `step`. What follows speaks of there.
+  void move_to(const StepInterval& step);
+
+  /// Contains the body.
+  [[nodiscard]] const Box3& bounds() const { return bounds_; }
+  /// As ImplicitSurface, in the world.
+  [[nodiscard]] double signed_distance(const Vec3d& x) const {
+    return surface_->signed_distance(now_.to_body(x));
+  }
+  [[nodiscard]] Vec3d normal(const Vec3d& x) const {
+    return now_.rotation * surface_->normal(now_.to_body(x));
+  }
+  /// Of the body's material at `x` [m/s].
+  [[nodiscard]] Vec3d velocity(const Vec3d& x) const { return now_.velocity_at(x); }
+  /// The same on average over the step: the way of the material that is at `x` now, over dt. What sticks to a
+  /// turning body goes this way, and not along the tangent.
+  [[nodiscard]] Vec3d mean_velocity(const Vec3d& x) const {
+    return (1 / step_.dt) * (x - before_.to_world(now_.to_body(x)));
+  }
+  [[nodiscard]] const RigidState& state() const { return now_; }
+  [[nodiscard]] const ImplicitSurface& surface() const { return *surface_; }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Coulomb coefficient, ≥ 0.
@@ -28,34 +50,11 @@ class Obstacle {
  private:
   std::string name_;
   double friction_;
-};
-
-/// Everything behind the plane through `point` with outward normal `normal` (need not be unit; not zero),
-/// moving with constant `velocity`.
-class HalfSpace final : public Obstacle {
- public:
-  HalfSpace(std::string name, double friction, const Vec3d& point, const Vec3d& normal,
-            const Vec3d& velocity = {});
-  [[nodiscard]] double signed_distance(const Vec3d& x, double t) const override;
-  [[nodiscard]] Vec3d normal(const Vec3d& /*x*/, double /*t*/) const override { return normal_; }
-  [[nodiscard]] Vec3d velocity(const Vec3d& /*x*/, double /*t*/) const override { return velocity_; }
-
- private:
-  Vec3d point_, normal_, velocity_;
-};
-
-/// A ball of `radius` > 0 [m], its centre at `center` when t = 0, moving with constant `velocity`.
-class Sphere final : public Obstacle {
- public:
-  Sphere(std::string name, double friction, const Vec3d& center, double radius, const Vec3d& velocity = {});
-  [[nodiscard]] double signed_distance(const Vec3d& x, double t) const override;
-  [[nodiscard]] Vec3d normal(const Vec3d& x, double t) const override;
-  [[nodiscard]] Vec3d velocity(const Vec3d& /*x*/, double /*t*/) const override { return velocity_; }
-
- private:
-  [[nodiscard]] Vec3d center_at(double t) const { return center_ + t * velocity_; }
-  Vec3d center_, velocity_;
-  double radius_;
+  std::unique_ptr<ImplicitSurface> surface_;
+  std::unique_ptr<RigidMotion> motion_;
+  StepInterval step_;
+  RigidState before_, now_;
+  Box3 bounds_;
 };
 
 }  // namespace evert

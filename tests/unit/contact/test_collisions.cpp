@@ -11,6 +11,13 @@ namespace {
 
 constexpr StepInterval step{0.1, 0.1};
 
+/// Through the origin at t = 0.
+std::unique_ptr<Obstacle> half_space(const char* name, double friction, const Vec3d& normal,
+                                     const Vec3d& velocity = {}) {
+  return std::make_unique<Obstacle>(name, friction, std::make_unique<HalfSpace>(Vec3d{}, normal),
+                                    std::make_unique<UniformMotion>(RigidState{.velocity = velocity}));
+}
+
 /// One node of mass 2 over the ground y = 0.
 struct OneNode {
   explicit OneNode(double friction, const Vec3d& ground_velocity = {})
@@ -18,7 +25,7 @@ struct OneNode {
 
   static std::vector<std::unique_ptr<Obstacle>> ground(double friction, const Vec3d& velocity) {
     std::vector<std::unique_ptr<Obstacle>> obstacles;
-    obstacles.push_back(std::make_unique<HalfSpace>("ground", friction, Vec3d{}, Vec3d{{0, 1, 0}}, velocity));
+    obstacles.push_back(half_space("ground", friction, {{0, 1, 0}}, velocity));
     return obstacles;
   }
   void resolve(std::span<const NodeConstraint> prescribed = {}) {
@@ -143,7 +150,7 @@ TEST(Collisions, FixedNodesPassThrough) {
 
 TEST(Collisions, InACornerBothNormalsAreHeld) {
   std::vector<std::unique_ptr<Obstacle>> obstacles = OneNode::ground(0, {});
-  obstacles.push_back(std::make_unique<HalfSpace>("wall", 0, Vec3d{}, Vec3d{{1, 0, 0}}));
+  obstacles.push_back(half_space("wall", 0, {{1, 0, 0}}));
   const std::vector<double> mass{1.0};
   Collisions collisions(std::move(obstacles), mass);
   std::vector<double> x{-0.1, -0.1, 0}, v{-1, -1, 1};
