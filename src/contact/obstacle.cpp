@@ -30,6 +30,9 @@ void Obstacle::move_to(const StepInterval& step) {
   before_ = motion_->at(step.end - step.dt);
   now_ = motion_->at(step.end);
   bounds_ = in_world(surface_->bounds(), now_);
+  const auto was = in_world(surface_->bounds(), before_);
+  bounds_.include(was.lower);
+  bounds_.include(was.upper);
 }
 
 }  // namespace evert
