@@ -4,7 +4,9 @@
 #include "evert/core/formatted.hpp"
 #include "evert/math/nodal.hpp"
 
+#include "scatter_inverted.hpp"
 #include <algorithm>
+#include <array>
 
 namespace evert {
 namespace {
@@ -12,10 +14,31 @@ namespace {
 constexpr int most_halvings = 10;
 // Parts are sums of powers of two of 1 / load_steps, which need not add up to 1 exactly.
 constexpr double whole = 1 - 1e-9;
+// Of an energy: less is no improvement.
+constexpr double negligible = 1e-6;
 
 void copy_owned(const NodeField& from, NodeField& to) {
   std::copy(from.owned().begin(), from.owned().end(), to.owned().begin());
   to.touched();
+}
+
+/// Collective. Of the elastic forces and of the loads at `t` [J].
+double potential_energy(const System& system, double t) {
+  NodeField loads(system.mesh);
+  system.add_loads(t, loads);
+  double energy = system.elastic.energy(system.x);
+  for (std::size_t i = 0; i < loads.owned().size(); ++i) energy -= loads.owned()[i] * system.x.owned()[i];
+  MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, system.mesh.comm);
+  return energy;
+}
+
+/// Collective.
+std::string untangling_note(const System& system, double time, std::uint64_t attempts) {
+  auto inverted = static_cast<GlobalIndex>(system.elastic.inverted_points(system.x));
+  MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPI_INT64_T, MPI_SUM, system.mesh.comm);
+  return formatted("t = %.6g s: elements were inverted at rest; after %llu searches around them, ", time,
+                   static_cast<unsigned long long>(attempts)) +
+         (inverted == 0 ? "none is" : std::to_string(inverted) + " points are still inverted");
 }
 
 std::string percent(double share) { return formatted("%.4g %%", 100 * share); }
@@ -56,8 +79,7 @@ StepReport Quasistatic::advance(System& system, double dt) {
     for (std::size_t i = 0; i < withheld_.owned().size(); ++i)
       withheld_.owned()[i] = (1 - next) * unbalanced_.owned()[i];
     const auto outcome = solver_.solve(system.x, held_, withheld_, load, end);
-    report.newton_iterations += outcome.newton_iterations;
-    report.linear_iterations += outcome.linear_iterations;
+    count(outcome, report);
     if (outcome.converged) {
       copy_owned(system.x, reached_);
       applied = next;
@@ -74,10 +96,41 @@ StepReport Quasistatic::advance(System& system, double dt) {
           " times smaller load steps; a smaller integrator.time_step, more integrator.load_steps "
           "or other -quasistatic_snes and -quasistatic_ksp options may help");
   }
+  if (options_.untangle > 0) untangle(system, end, load, report);
   system.update_forces(end);
   system.time = end;
   account(system, dt);
   return report;
+}
+
+/// A state of rest that is tangled is a minimum of the energy, but hardly ever the lowest around: the nodes
+/// of inverted cells are thrown about until a solve from there finds a lower one, then those of a ring of
+/// cells around them, and so on until nothing is inverted or luck runs out.
+void Quasistatic::untangle(System& system, double end, double load, StepReport& report) {
+  for (auto& c : held_) c.prescribed = {};
+  std::fill(withheld_.owned().begin(), withheld_.owned().end(), 0.0);
+  double lowest = potential_energy(system, end);
+  std::uint64_t attempt = 0;
+  for (int fruitless = 0; fruitless < options_.untangle; ++fruitless) {
+    if (!scatter_inverted(system, held_, attempt + 1, fruitless, system.x)) break;
+    ++attempt;
+    const auto outcome = solver_.solve(system.x, held_, withheld_, load, end);
+    count(outcome, report);
+    const double energy = outcome.converged ? potential_energy(system, end) : lowest;
+    if (energy < lowest - negligible * std::abs(lowest)) {
+      lowest = energy;
+      copy_owned(system.x, reached_);
+      fruitless = -1;
+    } else {
+      copy_owned(reached_, system.x);
+    }
+  }
+  if (attempt > 0) report.notes.push_back(untangling_note(system, end, attempt));
+}
+
+void Quasistatic::count(const EquilibriumSolver::Outcome& outcome, StepReport& report) const {
+  report.newton_iterations += outcome.newton_iterations;
+  report.linear_iterations += outcome.linear_iterations;
 }
 
 /// Nothing moves; what held nodes exert is what is left of the forces on them.

@@ -64,6 +64,11 @@ const Table<IntegratorConfig>& integrator_table() {
                     "the nearest positive semidefinite tangent of every point"},
                    {"full", TangentChoice::full, "the derivative of the stress as it is"}}),
               "projected", "Of quasistatic: what the Newton steps are made with.")
+          .optional(
+              "untangle", [](auto& config) -> auto& { return config.quasistatic.untangle; },
+              integer(0, 1'000'000), "100",
+              "Of quasistatic: where elements are inverted at rest, how many searches in a row around them "
+              "may find no state of less energy before that is taken for an answer; 0: none.")
           .then([](IntegratorConfig& config, const Value& map, const std::string& path) {
             const bool statics = config.method == IntegrationMethod::quasistatic;
             const auto refuse = [&](const char* key, const char* method) {
@@ -73,7 +78,7 @@ const Table<IntegratorConfig>& integrator_table() {
             };
             for (const char* key : {"safety", "max_strain_increment"})
               if (statics) refuse(key, "newmark");
-            for (const char* key : {"load_steps", "tangent"})
+            for (const char* key : {"load_steps", "tangent", "untangle"})
               if (!statics) refuse(key, "quasistatic");
           });
   return table;

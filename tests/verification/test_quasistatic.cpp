@@ -151,8 +151,9 @@ bodies:
 integrator: {method: quasistatic}
 )";
 
-/// Whether a tangled start ends at the rest shape, with nothing inverted. Else it must have come to rest in a
-/// shape of its own, far from that one: a minimum of the energy, too (docs/design/quasistatic.md).
+/// Whether a tangled start ends at the rest shape. Nothing is inverted in any case; what does not end there
+/// has come to rest in a shape of its own, far from that one: a minimum of the energy, too
+/// (docs/design/quasistatic.md).
 bool recovers(const std::string& name, const std::vector<std::string>& overrides) {
   auto scene = test::build(ball, overrides);
   auto& simulation = *scene.simulation;
@@ -162,7 +163,8 @@ bool recovers(const std::string& name, const std::vector<std::string>& overrides
   EXPECT_GT(distance(), 0.01) << name << " starts at rest";
   simulation.step_to(1);  // throws where it finds no rest
   const double error = distance();
-  const bool back = error < 1e-6 && simulation.inverted_points() == 0;
+  const bool back = error < 1e-6;
+  EXPECT_EQ(simulation.inverted_points(), 0) << name;
   EXPECT_TRUE(back || error > 1e-3) << name << ": " << error << " m";
   return back;
 }
@@ -192,14 +194,28 @@ TEST_F(QuasistaticSolve, FindsTheRestShapeFromTangledStarts) {
     int least;
   };
   constexpr int starts = 20;
-  for (const auto& [kind, least] : {Start{"scramble", 15}, Start{"flatten_plane", 15},
-                                    Start{"flatten_line", 15}, Start{"inside_out", 15}}) {
+  for (const auto& [kind, least] : {Start{"scramble", 18}, Start{"flatten_plane", 18},
+                                    Start{"flatten_line", 18}, Start{"inside_out", 18}}) {
     const int recovered = recoveries(kind, starts);
-    test::verify("quasistatic: of 20 balls back at the rest shape (1e-6 m), nothing inverted, from " +
-                     std::string(kind),
-                 "20", recovered, ">= " + std::to_string(least));
+    test::verify(
+        "quasistatic: of 20 balls, none of which ends inverted, back at the rest shape (1e-6 m), from " +
+            std::string(kind),
+        "20", recovered, ">= " + std::to_string(least));
     EXPECT_GE(recovered, least) << kind;
   }
+}
+
+/// Without the search around inverted elements some of the same balls stay tangled, and say nothing.
+TEST_F(QuasistaticSolve, LeavesTanglesAloneWhereAskedTo) {
+  int inverted = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    auto scene =
+        test::build(ball, {"bodies.body.start.seed=" + std::to_string(seed), "integrator.untangle=0"});
+    const auto notes = scene.simulation->step_to(1).notes;
+    EXPECT_TRUE(notes.empty());
+    inverted += scene.simulation->inverted_points() > 0 ? 1 : 0;
+  }
+  EXPECT_GT(inverted, 0);
 }
 
 TEST_F(QuasistaticSolve, FindsTheRestShapeOfAScrambledSharedMesh) {
@@ -213,8 +229,9 @@ TEST_F(QuasistaticSolve, FindsTheRestShapeOfAScrambledSharedMesh) {
                                                 "bodies.body.start.seed=" + std::to_string(seed)})
                      ? 1
                      : 0;
-  test::verify("quasistatic: of 20 scrambled ball404 back at the rest shape", "20", recovered, ">= 10");
-  EXPECT_GE(recovered, 10);
+  test::verify("quasistatic: of 20 scrambled ball404, none of which ends inverted, back at the rest shape",
+               "20", recovered, ">= 18");
+  EXPECT_GE(recovered, 18);
 }
 
 }  // namespace

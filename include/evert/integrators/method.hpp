@@ -15,6 +15,7 @@ enum class TangentChoice {
 struct QuasistaticOptions {
   int load_steps = 1;  ///< parts that a change of load or position is applied in, at first
   TangentChoice tangent = TangentChoice::adaptive;
+  int untangle = 10;  ///< fruitless attempts in a row to find a state of less energy where cells are inverted
 };
 
 }  // namespace evert

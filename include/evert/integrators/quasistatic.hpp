@@ -9,7 +9,8 @@ namespace evert {
 /// are zero; damping, inertia and obstacles take no part.
 ///
 /// What has changed since the last state, of whatever kind (loads, materials, prescribed positions), is
-/// applied in parts: a part in which the solver does not converge is halved.  docs/design/quasistatic.md
+/// applied in parts: a part in which the solver does not converge is halved. Where elements are inverted at
+/// rest, states of less energy are looked for around them.  docs/design/quasistatic.md
 class Quasistatic {
  public:
   /// Collective.
@@ -20,6 +21,8 @@ class Quasistatic {
   StepReport advance(System& system, double dt);
 
  private:
+  void untangle(System& system, double end, double load, StepReport& report);
+  void count(const EquilibriumSolver::Outcome& outcome, StepReport& report) const;
   void account(System& system, double dt) const;
 
   QuasistaticOptions options_;

@@ -31,7 +31,7 @@ const std::vector<Mistake> mistakes{
      "gravity:", "gravitiy:", "scene.yaml:3: gravitiy: unknown key (did you mean 'gravity'?)"},
     {"foreign_key", "safety: 0.5", "color: red",
      "scene.yaml:43: integrator.color: unknown key; known here are method, time_step, safety, "
-     "max_strain_increment, load_steps or tangent"},
+     "max_strain_increment, load_steps, tangent or untangle"},
     {"misspelt_tag", "shape: sphere", "shpe: sphere",
      "scene.yaml:36: obstacles.ball.shpe: unknown key (did you mean 'shape'?)"},
     {"key_of_another_shape", "radius: 4", "radius: 4, normal: [0, 1, 0]",
