@@ -21,7 +21,7 @@ namespace {
 constexpr const char* help = R"(evert mesh: makes, converts, judges and partitions meshes
 
 evert mesh generate SHAPE ... -o OUT     make a mesh and print its quality; lengths in metres
-  box        -size X,Y,Z (-edge_length E | -cells NX,NY,NZ [-hole NX,NY]) [-cell bcc|tet5|tet6|hex8|wedge6]
+  box        -size X,Y,Z (-edge_length E | -cells NX,NY,NZ [-hole NX,NY | -cross N]) [-cell bcc|tet5|tet6|hex8|wedge6]
   ball       -radius R -edge_length E
   torus      -major_radius R -minor_radius R -edge_length E
   cylinder   -radius R -length L -edge_length E

@@ -37,11 +37,15 @@ Mesh make_box(const CommandOptions& options) {
     throw UserError("evert mesh generate box needs either -edge_length or -cells");
   const auto size = options.three_numbers("size");
   if (options.has("edge_length")) {
-    if (options.has("hole")) throw UserError("evert mesh generate box: -hole needs -cells");
+    for (const char* cut : {"hole", "cross"})
+      if (options.has(cut))
+        throw UserError("evert mesh generate box: -" + std::string(cut) + " needs -cells");
     return generate_box(size, options.number("edge_length"), cells);
   }
-  const auto hole = options.has("hole") ? options.two_whole_numbers("hole") : std::array<int, 2>{};
-  return generate_box(size, options.three_whole_numbers("cells"), cells, hole);
+  BoxCut cut;
+  if (options.has("hole")) cut.hole = options.two_whole_numbers("hole");
+  if (options.has("cross")) cut.cross = options.whole_number("cross");
+  return generate_box(size, options.three_whole_numbers("cells"), cells, cut);
 }
 
 /// A shape filled by stuffing: all take -edge_length.
@@ -55,7 +59,7 @@ Shape implicit(std::string name, std::vector<std::string> options,
 
 const std::vector<Shape>& shapes() {
   static const std::vector<Shape> table{
-      {"box", {"size", "edge_length", "cells", "hole", "cell"}, make_box},
+      {"box", {"size", "edge_length", "cells", "hole", "cross", "cell"}, make_box},
       implicit("ball", {"radius"}, [](const CommandOptions& o) { return ball(o.number("radius")); }),
       implicit(
           "torus", {"major_radius", "minor_radius"},

@@ -13,8 +13,9 @@
 namespace evert {
 namespace {
 
+/// What rest stiffness is made of.
 Lame lame_of(const Material& material) {
-  return std::visit([](const auto& model) { return model.lame; }, material);
+  return std::visit([](const auto& model) { return model.lame.regular(); }, material);
 }
 
 template <class Vector>

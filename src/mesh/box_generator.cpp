@@ -18,20 +18,22 @@ using Corners = std::array<GlobalIndex, 8>;  ///< of a cube, in VTK's order
 /// Node numbers of a grid of cubes: its corners and, behind them, the middles of the cubes.
 class Grid {
  public:
-  Grid(const Vec3d& size, const std::array<int, 3>& divisions, const std::array<int, 2>& hole)
-      : size_(size), n_(divisions), hole_(hole) {}
+  Grid(const Vec3d& size, const std::array<int, 3>& divisions, const BoxCut& cut)
+      : size_(size), n_(divisions), cut_(cut) {}
 
   [[nodiscard]] int divisions(std::size_t axis) const { return n_[axis]; }
-  /// False outside the box and in its hole.
+  /// False outside the box and where something is cut off.
   [[nodiscard]] bool has_cube(int i, int j, int k) const {
     const std::array cube{i, j, k};
-    bool in_box = true, in_hole = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) in_box = in_box && cube[axis] >= 0 && cube[axis] < n_[axis];
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const int first = (n_[axis] - hole_[axis]) / 2;
-      in_hole = in_hole && cube[axis] >= first && cube[axis] < first + hole_[axis];
-    }
-    return in_box && !in_hole;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (cube[axis] < 0 || cube[axis] >= n_[axis]) return false;
+    const auto in_middle = [&](std::size_t axis, int width) {
+      const int first = (n_[axis] - width) / 2;
+      return cube[axis] >= first && cube[axis] < first + width;
+    };
+    if (in_middle(0, cut_.hole[0]) && in_middle(1, cut_.hole[1])) return false;
+    if (cut_.cross == 0) return true;
+    return in_middle(0, cut_.cross) + in_middle(1, cut_.cross) + in_middle(2, cut_.cross) >= 2;
   }
   [[nodiscard]] GlobalIndex corner(int i, int j, int k) const {
     return (GlobalIndex{k} * (n_[1] + 1) + j) * (n_[0] + 1) + i;
@@ -57,7 +59,7 @@ class Grid {
 
   Vec3d size_;
   std::array<int, 3> n_;
-  std::array<int, 2> hole_;
+  BoxCut cut_;
 };
 
 template <class Visit>
@@ -146,16 +148,23 @@ void add_face_sets(Mesh& mesh, const Grid& grid) {
   }
 }
 
-void require_hole_in_the_middle(const std::array<int, 3>& divisions, const std::array<int, 2>& hole) {
-  if (hole == std::array<int, 2>{}) return;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto numbers = "hole is " + std::to_string(hole[axis]) + " of " + std::to_string(divisions[axis]) +
-                         " cubes along " + std::string(1, "xy"[axis]);
-    if (hole[axis] < 1 || hole[axis] >= divisions[axis])
-      throw UserError(numbers + ", but must be at least 1 and less than all");
-    if ((divisions[axis] - hole[axis]) % 2 != 0)
-      throw UserError(numbers + ": to be in the middle, both must be odd or both even");
-  }
+void require_in_the_middle(const char* what, int width, int of, char axis) {
+  const auto numbers = std::string(what) + " is " + std::to_string(width) + " of " + std::to_string(of) +
+                       " cubes along " + std::string(1, axis);
+  if (width < 1 || width >= of) throw UserError(numbers + ", but must be at least 1 and less than all");
+  if ((of - width) % 2 != 0)
+    throw UserError(numbers + ": to be in the middle, both must be odd or both even");
+}
+
+void require_possible_cut(const std::array<int, 3>& divisions, const BoxCut& cut) {
+  if (cut.hole != std::array<int, 2>{})
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      require_in_the_middle("hole", cut.hole[axis], divisions[axis], "xy"[axis]);
+  if (cut.cross != 0)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      require_in_the_middle("cross", cut.cross, divisions[axis], "xyz"[axis]);
+  if (cut.cross != 0 && cut.hole != std::array<int, 2>{})
+    throw UserError("hole and cross exclude each other");
 }
 
 double cells_per_cube(BoxCells cells) {
@@ -193,8 +202,7 @@ Mesh generate_box(const Vec3d& size, double edge_length, BoxCells cells) {
   return generate_box(size, divisions, cells);
 }
 
-Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells,
-                  const std::array<int, 2>& hole) {
+Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells, const BoxCut& cut) {
   for (const double side : size.components) require_positive(side, "size");
   double cubes = 1;
   for (const int n : divisions) {
@@ -204,8 +212,8 @@ Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCel
   }
   require_possible_size(cubes * cells_per_cube(cells), cubes);
 
-  require_hole_in_the_middle(divisions, hole);
-  const Grid grid(size, divisions, hole);
+  require_possible_cut(divisions, cut);
+  const Grid grid(size, divisions, cut);
   Mesh mesh;
   for (int k = 0; k <= divisions[2]; ++k)
     for (int j = 0; j <= divisions[1]; ++j)
@@ -226,7 +234,7 @@ Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCel
   mesh.regions = {"body"};
   mesh.node_sets.push_back({"surface", boundary_nodes(mesh)});
   add_face_sets(mesh, grid);
-  drop_unused_nodes(mesh);  // those in the hole
+  drop_unused_nodes(mesh);  // of what is cut off
   return mesh;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 Mesh make(const BoxMesh& box) {
   auto mesh = box.edge_length > 0 ? generate_box(box.size, box.edge_length, box.cell)
-                                  : generate_box(box.size, box.cells, box.cell, box.hole);
+                                  : generate_box(box.size, box.cells, box.cell, {box.hole, box.cross});
   const Vec3d center = 0.5 * (box.min + box.max);
   for (auto& node : mesh.nodes) node += center;
   return mesh;

@@ -104,9 +104,12 @@ void check_numbers(const MaterialConfig& material, const Value& map, const std::
     wrong("lambda", "must be > -2/3 mu, or compression meets no resistance");
   if (material.mu_10 && *material.mu_10 + *material.mu_01 == 0)
     wrong("mu_10", "mu_10 and mu_01 must not both be 0");
-  if (has_fibres(material.model) && material.youngs_modulus && !(*material.youngs_modulus > 0))
-    wrong("youngs_modulus",
-          "must be > 0 with 'model: " + name_of(material.model) + "': fibres need a matrix");
+  const auto expect_matrix = [&](const char* key, const std::optional<double>& value) {
+    if (has_fibres(material.model) && value && !(*value > 0))
+      wrong(key, "must be > 0 with 'model: " + name_of(material.model) + "': fibres need a matrix");
+  };
+  expect_matrix("youngs_modulus", material.youngs_modulus);
+  expect_matrix("mu", material.mu);
   if (material.mu_10 && map.find("mu_01_share") != nullptr) wrong("mu_01_share", "mu_01 says it already");
   const bool at_end =
       material.compression_limit && (*material.compression_limit == 0 || *material.compression_limit == 1);
@@ -122,7 +125,8 @@ void add_moduli(Table<MaterialConfig>& table) {
               "Lateral contraction over extension; towards 0.5 the volume is kept.")
       .either("lambda", &MaterialConfig::lambda, number("Pa"), "1e5",
               "First Lame parameter, with mu, instead of youngs_modulus and poissons_ratio; > -2/3 mu.")
-      .either("mu", &MaterialConfig::mu, number("Pa", above(0)), "5e4", "Shear modulus of small strains.")
+      .either("mu", &MaterialConfig::mu, number("Pa", at_least(0)), "5e4",
+              "Shear modulus of small strains. 0 is a body that resists changes of volume only.")
       .either(
           "mu_10", &MaterialConfig::mu_10, number("Pa", at_least(0)), "6e4",
           "Of mooney_rivlin, muscle and tendon, with mu_01 and bulk_modulus instead of youngs_modulus and "

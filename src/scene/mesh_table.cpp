@@ -1,6 +1,7 @@
 #include "tables.hpp"
 #include <cmath>
 #include <functional>
+#include <span>
 
 /// The meshes that a body can have: a file, or one of the generators.
 namespace evert {
@@ -34,17 +35,19 @@ const Table<FileMesh>& file_mesh() {
   return table;
 }
 
-void check_hole(const BoxMesh& box, const Value& map, const std::string& path) {
-  const auto* hole = map.find("hole");
-  if (hole == nullptr) return;
+/// Throws unless `key`, where it is given, leaves out cubes in the middle: `widths` along the first axes.
+void check_cut(const char* key, std::span<const int> widths, const BoxMesh& box, const Value& map,
+               const std::string& path) {
+  const auto* value = map.find(key);
+  if (value == nullptr) return;
   if (map.find("cells") == nullptr)
-    fail(*hole, join(path, "hole"), "needs 'cells', of which it leaves some out");
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    if (box.hole[axis] >= box.cells[axis] || (box.cells[axis] - box.hole[axis]) % 2 != 0)
-      fail(*hole, join(path, "hole"),
-           "must be in the middle: along x and y less than 'cells' by an even number, but is " +
-               std::to_string(box.hole[axis]) + " of " + std::to_string(box.cells[axis]) + " along " +
-               std::string(1, "xy"[axis]));
+    fail(*value, join(path, key), "needs 'cells', of which it leaves some out");
+  for (std::size_t axis = 0; axis < widths.size(); ++axis)
+    if (widths[axis] >= box.cells[axis] || (box.cells[axis] - widths[axis]) % 2 != 0)
+      fail(*value, join(path, key),
+           "must be in the middle: less than 'cells' by an even number, but is " +
+               std::to_string(widths[axis]) + " of " + std::to_string(box.cells[axis]) + " along " +
+               std::string(1, "xyz"[axis]));
 }
 
 void finish_box(BoxMesh& box, const Value& map, const std::string& path) {
@@ -66,7 +69,10 @@ void finish_box(BoxMesh& box, const Value& map, const std::string& path) {
     expect_possible(box.size[0] * box.size[1] * box.size[2], box.edge_length, map, path);
   else if (static_cast<double>(box.cells[0]) * box.cells[1] * box.cells[2] > most_cells)
     fail(*map.find("cells"), join(path, "cells"), "are too many: at most 1e9 in all");
-  check_hole(box, map, path);
+  check_cut("hole", box.hole, box, map, path);
+  check_cut("cross", std::array{box.cross, box.cross, box.cross}, box, map, path);
+  if (map.find("hole") != nullptr && map.find("cross") != nullptr)
+    fail(map, path, "'hole' and 'cross' exclude each other");
 }
 
 const Table<BoxMesh>& box_mesh() {
@@ -83,6 +89,8 @@ const Table<BoxMesh>& box_mesh() {
                   "Edge of the cubes, about; instead of cells.")
           .either("hole", &BoxMesh::hole, array_of<2>(integer(1, 1'000'000), "whole numbers"), "[6, 4]",
                   "Cubes along x and y that are left out in the middle, all the way along z: a square ring.")
+          .either("cross", &BoxMesh::cross, integer(1, 1'000'000), "20",
+                  "Leaves only three bars along x, y and z, so many cubes thick, that meet in the middle.")
           .optional("cell", &BoxMesh::cell,
                     one_of<BoxCells>({{"bcc", BoxCells::bcc, "tetrahedra of the body-centred cubic lattice"},
                                       {"tet6", BoxCells::tet6, "6 tetrahedra a cube"},

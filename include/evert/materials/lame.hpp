@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 
 namespace evert {
 
@@ -17,6 +18,10 @@ struct Lame {
   static constexpr Lame from_shear_bulk(double shear_modulus, double bulk_modulus) {
     return {bulk_modulus - 2.0 / 3 * shear_modulus, shear_modulus};
   }
+
+  /// With a little resistance to shear where there is none, as in a liquid: what the stiffness of a state is
+  /// compared with. A body without any stiffness stays one.
+  [[nodiscard]] constexpr Lame regular() const { return {lambda, std::max(mu, 1e-5 * lambda)}; }
 
   [[nodiscard]] constexpr double bulk_modulus() const { return lambda + 2.0 / 3 * mu; }
 };

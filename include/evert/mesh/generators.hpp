@@ -21,11 +21,17 @@ enum class BoxCells {
 /// faces "x_min", "x_max", "y_min", ... "z_max". Throws UserError when a length is not positive and finite,
 /// or when there would be more than 2^31 cells.
 [[nodiscard]] Mesh generate_box(const Vec3d& size, double edge_length, BoxCells cells = BoxCells::bcc);
-/// The same with the number of cubes along each axis, and without the `hole[0]` × `hole[1]` columns of cubes
-/// along z in the middle of it. Throws UserError when a hole is not smaller than the box, or cannot be in the
-/// middle since it is odd and the box even, or the reverse.
+/// What of a box of cubes is left out. All in cubes, and in the middle of the box.
+struct BoxCut {
+  std::array<int, 2> hole{};  ///< the columns along z over so many cubes in x and y; 0: no hole
+  int cross = 0;              ///< all but three bars along the axes, so thick; 0: nothing
+};
+
+/// The same with the number of cubes along each axis, and without what `cut` takes off. Throws UserError when
+/// a hole or a bar is not smaller than the box, or cannot be in the middle since it is odd and the box even,
+/// or the reverse.
 [[nodiscard]] Mesh generate_box(const Vec3d& size, const std::array<int, 3>& divisions, BoxCells cells,
-                                const std::array<int, 2>& hole = {});
+                                const BoxCut& cut = {});
 
 /// Fills any shape with tetrahedra by isosurface stuffing (Labelle and Shewchuk 2007, uniform): a
 /// body-centred cubic lattice whose nodes near the surface are moved onto it and whose tetrahedra are cut

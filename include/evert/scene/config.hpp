@@ -36,6 +36,7 @@ struct BoxMesh {
   BoxCells cell = BoxCells::bcc;
   std::array<int, 3> cells{};  ///< along x, y, z; all 0 when edge_length is given
   std::array<int, 2> hole{};   ///< cubes left out in the middle along x, y; 0 without a hole
+  int cross = 0;               ///< cubes that the bars of a cross are thick; 0 without
   double edge_length = 0;      ///< [m]; 0 when cells are given
 };
 

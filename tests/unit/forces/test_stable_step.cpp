@@ -241,6 +241,37 @@ TEST(StableStep, IsABoundAtEveryState) {
   }
 }
 
+/// Without resistance to shear, as a liquid: what is left are the stiffness of volume and that of stress
+/// against rotation.
+TEST(StableStep, OfALiquidIsABound) {
+  const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);
+  const Lame liquid{1e4, 0};
+  for (const Material& material : std::vector<Material>{
+           RotatedLinear{.lame = liquid}, StVenantKirchhoff{.lame = liquid}, NeoHookean{.lame = liquid},
+           MooneyRivlin{.lame = liquid}, StableNeoHookean{.lame = liquid}}) {
+    const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      const double squash = 1.2 - 0.03 * seed;
+      const NodalValues x = deformed(
+          body,
+          [=](const Vec3d& p) {
+            return Vec3d{p[0], squash * p[1], 1.1 * p[2]};
+          },
+          0.005, seed);
+      const double exact =
+          2 / std::sqrt(std::max(
+                  largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
+      const double bound = block->stable_step(x.data()).undamped;
+      EXPECT_LE(bound, exact * 1.001) << name_of(material) << ", squashed to " << squash;
+      EXPECT_GT(bound, 0);
+    }
+    const double at_rest =
+        2 / std::sqrt(largest_eigenvalue(per_mass(stiffness_at_rest(body, liquid), lumped_mass(body))));
+    EXPECT_GE(block->stable_step(nodal_values(body.rest).data()).undamped, 0.4 * at_rest)
+        << name_of(material);
+  }
+}
+
 /// The same of muscle, with fibres as strong as its matrix and ten times as strong, shortened and stretched.
 TEST(StableStep, IsABoundAtEveryActivation) {
   const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);

@@ -50,7 +50,7 @@ TEST(Box, fills_its_volume_with_every_kind_of_cell) {
 
 TEST(Box, has_a_hole_through_its_middle) {
   for (const auto cells : {BoxCells::hex8, BoxCells::wedge6, BoxCells::tet5, BoxCells::tet6, BoxCells::bcc}) {
-    const auto mesh = generate_box({5, 6, 2}, {5, 6, 2}, cells, {3, 2});
+    const auto mesh = generate_box({5, 6, 2}, {5, 6, 2}, cells, {.hole = {3, 2}});
     EXPECT_NO_THROW(require_positive_volumes(mesh, "ring"));
     const auto quality = measure_quality(mesh);
     EXPECT_NEAR(quality.total_volume, 2 * (5 * 6 - 3 * 2), 1e-12);
@@ -64,6 +64,19 @@ TEST(Box, has_a_hole_through_its_middle) {
       EXPECT_FALSE(std::abs(p[0]) < 1.5 && std::abs(p[1]) < 1) << "in the hole";
     EXPECT_EQ(node_set(mesh, "z_max").nodes.size(), 6U * 7U - 2U * 1U);
   }
+}
+
+TEST(Box, becomes_a_cross) {
+  for (const auto cells : {BoxCells::hex8, BoxCells::wedge6, BoxCells::tet5, BoxCells::tet6, BoxCells::bcc}) {
+    const auto mesh = generate_box({5, 6, 4}, {10, 12, 8}, cells, {.cross = 4});
+    EXPECT_NO_THROW(require_positive_volumes(mesh, "cross"));
+    const auto quality = measure_quality(mesh);
+    EXPECT_NEAR(quality.total_volume, (10 + 12 + 8 - 2 * 4) * 4 * 4 * 0.125, 1e-10);
+    EXPECT_EQ(quality.components, 1);
+    EXPECT_EQ(quality.unused_nodes, 0);
+    EXPECT_EQ(node_set(mesh, "x_max").nodes.size(), 25U) << "the end of a bar";
+  }
+  EXPECT_EQ(generate_box({3, 3, 3}, {60, 60, 60}, BoxCells::hex8, {.cross = 20}).cell_count(), 56000);
 }
 
 TEST(Box, names_its_sides) {

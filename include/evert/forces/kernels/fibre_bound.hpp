@@ -49,7 +49,7 @@ EVERT_ALWAYS_INLINE FibreModuli<T> fibre_moduli(const AlongFibre<Model, T>& alon
 template <Real T, class Model>
 EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const AlongFibre<Model, T>& along, const Svd3<T>& svd,
                                                   int points) {
-  const Lame& lame = along.model.lame;
+  const Lame lame = along.model.lame.regular();
   const TangentBound<T> matrix = tangent_bound(along.model.matrix(), svd.sigma, points);
   const FibreModuli<T> fibre = fibre_moduli(along, svd);
   const double least = 2 * lame.mu + std::min(0.0, 3 * lame.lambda);

@@ -287,8 +287,9 @@ StableStep stable_step(const BlockArrays& block, const Material& material, const
   const Model model = model_of<Model>(material);
   T undamped = T(std::numeric_limits<scalar_t<T>>::infinity());
   T damped = undamped;
-  if (!(model.lame.mu > 0)) return {lane(undamped, 0), lane(damped, 0)};  // E = 0: nothing limits the step
-  const T time = T(damping_time(damping, model.lame));
+  const Lame lame = model.lame.regular();
+  if (!(lame.mu > 0)) return {lane(undamped, 0), lane(damped, 0)};  // E = 0: nothing limits the step
+  const T time = T(damping_time(damping, lame));
   for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
     diagonalize(run, points);
     for (std::size_t i = 0; i < points; ++i) {

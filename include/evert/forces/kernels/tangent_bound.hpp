@@ -93,21 +93,22 @@ inline double spin_share(const Lame& lame, int points) {
 }
 
 /// `model` at the principal stretches `sigma`, in any order, in an element of `points` quadrature points.
-/// `model.lame` must be positive definite (E > 0).
+/// `model.lame.regular()` must be positive definite; it is what B is made of.
 template <Real T, class Model>
 EVERT_ALWAYS_INLINE TangentBound<T> tangent_bound(const Model& model, const Vec3<T>& sigma, int points) {
+  const Lame lame = model.lame.regular();
   const Vec3<T> stress = model.principal_stress(sigma);
   const Mat3<T> derivative = model.stress_derivative(sigma);
-  T stretching = max(largest_eigenvalue_bound(relative_to_rest(derivative, model.lame)), T(0.0));
+  T stretching = max(largest_eigenvalue_bound(relative_to_rest(derivative, lame)), T(0.0));
   T skew = T(0.0);
-  const T in_shear = T(1 / (2 * model.lame.mu));
+  const T in_shear = T(1 / (2 * lame.mu));
   const Vec3<T> shear = shear_moduli(model, sigma, stress, derivative);
   const Vec3<T> spins = spin_moduli(model, sigma, stress, smallest_stretch_sum);
   for (std::size_t k = 0; k < 3; ++k) {
     stretching = max(stretching, in_shear * shear[k]);
     skew = max(skew, in_shear * spins[k]);
   }
-  const T spin = T(spin_share(model.lame, points)) * skew;
+  const T spin = T(spin_share(lame, points)) * skew;
   const T total = min(max(stretching, skew), stretching + spin);
   const auto finite = total + T(0.0) * (sigma[0] + sigma[1] + sigma[2]) < T(unresolvable<scalar_t<T>>);
   return {stretching, spin, select(finite, total, T(unresolvable<scalar_t<T>>)), skew};
