@@ -3,6 +3,7 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/log.hpp"
 
+#include "consistent_bound.hpp"
 #include "mass_shares.hpp"
 #include <algorithm>
 #include <cmath>
@@ -78,8 +79,10 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   masses_ = lumped(densities);
   balance_masses(mesh_, halo_, masses_, blocks_);
   if (mass == MassForm::consistent) {
-    step_over_lumped_ = 1 / std::sqrt(lumped_over_consistent(mesh_));
+    lumped_over_consistent_ = lumped_over_consistent(mesh_);
     consistent_mass_ = std::make_unique<ConsistentMass>(mesh_, halo_, densities);
+    densities_ = densities;
+    bound_consistent_step();
   }
 
   const auto has_mass_damping = [](const ElasticProperties& p) {
@@ -90,6 +93,13 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   for (const auto& of_region : properties)
     damped_densities_.push_back(of_region.density * of_region.mass_proportional_damping.value_or(0));
   make_mass_damping();
+}
+
+/// Of two bounds of λmax(M⁻¹K) the smaller: that of lumped masses times the ratio of these, and the largest
+/// eigenvalue of any cell by itself. docs/design/time-stepping.md
+void ElasticForces::bound_consistent_step() {
+  const double of_cells = consistent_over_block_stiffness(mesh_, densities_, blocks_);
+  step_over_lumped_ = 1 / std::sqrt(std::min(lumped_over_consistent_, of_cells));
 }
 
 void ElasticForces::make_mass_damping() {
@@ -232,6 +242,7 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
     if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
       blocks_[i]->set_material(properties.material, properties.damping);
   balance_masses(mesh_, halo_, masses_, blocks_);
+  if (consistent_mass_ != nullptr) bound_consistent_step();
   if (damped_densities_.empty()) return;
   damped_densities_[static_cast<std::size_t>(region)] =
       properties.density * properties.mass_proportional_damping.value_or(0);

@@ -92,6 +92,8 @@ class ElasticForces {
   /// add_damping with what else is to be done while ghosts are at hand.
   template <class AtBoundary>
   void damp(NodeField& v, NodeField& out, double factor, AtBoundary&& at_boundary) const;
+  /// Collective. With consistent masses: what the stable step of lumped ones is to be multiplied by.
+  void bound_consistent_step();
   /// Collective. The part of C that is proportional to mass, of damped_densities_.
   void make_mass_damping();
 
@@ -103,8 +105,10 @@ class ElasticForces {
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
   std::unique_ptr<ConsistentMass> consistent_mass_, consistent_mass_damping_;  // where asked for
-  double step_over_lumped_ = 1;  // of the stable step, with consistent masses
-  mutable NodeField scratch_;    // columns of the diagonal blocks on their way to the owners
+  std::vector<double> densities_;      // per region, only with consistent masses
+  double lumped_over_consistent_ = 1;  // masses, the largest ratio in any cell
+  double step_over_lumped_ = 1;        // of the stable step
+  mutable NodeField scratch_;          // columns of the diagonal blocks on their way to the owners
   bool damped_ = false;
 };
 
