@@ -118,7 +118,8 @@ void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& b
       report.line("cells", formatted("%d %s in ", cells.size(), std::string(name_of(cells.type)).c_str()) +
                                mesh.regions[static_cast<std::size_t>(cells.region)]);
   const auto masses = built.simulation->elastic().masses();
-  report.line("mass", formatted("%.6g kg in all", std::accumulate(masses.begin(), masses.end(), 0.0)));
+  report.line("mass", formatted("%.6g kg in all", std::accumulate(masses.begin(), masses.end(), 0.0)) +
+                          (scene.integrator.mass == MassForm::consistent ? ", consistent" : ""));
 }
 
 void report_surroundings(Report& report, const SceneConfig& scene, const DistributedMesh& mesh) {

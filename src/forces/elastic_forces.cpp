@@ -3,8 +3,10 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/log.hpp"
 
+#include "consistent_bound.hpp"
 #include "mass_shares.hpp"
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace evert {
@@ -26,9 +28,10 @@ void clear(std::span<double> values) { std::fill(values.begin(), values.end(), 0
 
 /// Runs `compute` over all batches while values travel: half of the interior hides the update of `in`, the
 /// other half the sum of `out`, and the boundary stands between.
-template <class Compute>
+/// `at_boundary` is called while the ghosts of both are at hand.
+template <class Compute, class AtBoundary>
 void overlapped(const Halo& halo, std::span<const std::unique_ptr<ElasticBlock>> blocks, NodeField& in,
-                NodeField& out, Compute&& compute) {
+                NodeField& out, Compute&& compute, AtBoundary&& at_boundary) {
   const auto each = [&](auto&& range_of) {
     for (const auto& block : blocks)
       if (block != nullptr) compute(*block, range_of(*block));
@@ -37,10 +40,13 @@ void overlapped(const Halo& halo, std::span<const std::unique_ptr<ElasticBlock>>
   each([](const ElasticBlock& block) { return first_half(block.interior()); });
   halo.end_update(in);
   each([](const ElasticBlock& block) { return block.boundary(); });
+  at_boundary();
   halo.begin_add(out);
   each([](const ElasticBlock& block) { return second_half(block.interior()); });
   halo.end_add(out);
 }
+
+constexpr auto nothing = [] {};
 
 double points_of(const DistributedMesh& mesh) {
   double points = 0;
@@ -51,7 +57,8 @@ double points_of(const DistributedMesh& mesh) {
 
 }  // namespace
 
-ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties)
+ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties,
+                             MassForm mass)
     : mesh_(mesh), halo_(mesh), scratch_(mesh) {
   const auto properties_of = [&](const LocalCells& cells) -> const ElasticProperties& {
     return properties[static_cast<std::size_t>(cells.region)];
@@ -71,6 +78,12 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   for (const auto& of_region : properties) densities.push_back(of_region.density);
   masses_ = lumped(densities);
   balance_masses(mesh_, halo_, masses_, blocks_);
+  if (mass == MassForm::consistent) {
+    lumped_over_consistent_ = lumped_over_consistent(mesh_);
+    consistent_mass_ = std::make_unique<ConsistentMass>(mesh_, halo_, densities);
+    densities_ = densities;
+    bound_consistent_step();
+  }
 
   const auto has_mass_damping = [](const ElasticProperties& p) {
     return p.mass_proportional_damping.has_value();
@@ -79,7 +92,24 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
   damped_ = true;
   for (const auto& of_region : properties)
     damped_densities_.push_back(of_region.density * of_region.mass_proportional_damping.value_or(0));
-  mass_damping_ = lumped(damped_densities_);
+  make_mass_damping();
+}
+
+/// Of two bounds of λmax(M⁻¹K) the smaller: that of lumped masses times the ratio of these, and the largest
+/// eigenvalue of any cell by itself. docs/design/time-stepping.md
+void ElasticForces::bound_consistent_step() {
+  const double of_cells = consistent_over_block_stiffness(mesh_, densities_, blocks_);
+  step_over_lumped_ = 1 / std::sqrt(std::min(lumped_over_consistent_, of_cells));
+}
+
+void ElasticForces::make_mass_damping() {
+  if (consistent_mass_ == nullptr) {
+    mass_damping_ = lumped(damped_densities_);
+    return;
+  }
+  consistent_mass_damping_ = std::make_unique<ConsistentMass>(mesh_, halo_, damped_densities_);
+  const auto sums = consistent_mass_damping_->row_sums();
+  mass_damping_.assign(sums.begin(), sums.end());
 }
 
 std::vector<double> ElasticForces::lumped(std::span<const double> densities) {
@@ -99,24 +129,51 @@ std::vector<double> ElasticForces::lumped(std::span<const double> densities) {
 void ElasticForces::update(NodeField& x, NodeField& f) {
   const PhaseScope scope(Phase::force, force_flops * points_of(mesh_));
   clear(f.local());
-  overlapped(halo_, blocks_, x, f, [&](ElasticBlock& block, BatchRange batches) {
+  const auto compute = [&](ElasticBlock& block, BatchRange batches) {
     block.update(x.local().data(), f.local().data(), batches);
-  });
+  };
+  overlapped(halo_, blocks_, x, f, compute, nothing);
   f.touched();
 }
 
-void ElasticForces::add_damping(NodeField& v, NodeField& out, double factor) const {
+template <class AtBoundary>
+void ElasticForces::damp(NodeField& v, NodeField& out, double factor, AtBoundary&& at_boundary) const {
   const PhaseScope scope(Phase::damping_apply, damping_flops * points_of(mesh_));
   clear(out.local().subspan(out.owned().size()));
   const auto velocity = v.owned();
   const auto sum = out.owned();
-  for (std::size_t node = 0; node < mass_damping_.size(); ++node) {
-    const double of_node = factor * mass_damping_[node];
-    for (std::size_t i = 3 * node; i < 3 * node + 3; ++i) sum[i] += of_node * velocity[i];
+  if (consistent_mass_damping_ == nullptr) {
+    for (std::size_t node = 0; node < mass_damping_.size(); ++node) {
+      const double of_node = factor * mass_damping_[node];
+      for (std::size_t i = 3 * node; i < 3 * node + 3; ++i) sum[i] += of_node * velocity[i];
+    }
   }
-  overlapped(halo_, blocks_, v, out, [&](const ElasticBlock& block, BatchRange batches) {
+  const auto compute = [&](const ElasticBlock& block, BatchRange batches) {
     if (block.damped()) block.add_damping(v.local().data(), out.local().data(), factor, batches);
+  };
+  overlapped(halo_, blocks_, v, out, compute, at_boundary);
+  out.touched();
+}
+
+void ElasticForces::add_damping(NodeField& v, NodeField& out, double factor) const {
+  if (consistent_mass_damping_ == nullptr) return damp(v, out, factor, nothing);
+  damp(v, out, factor, [&] { consistent_mass_damping_->add(v.local(), out.local(), factor); });
+}
+
+void ElasticForces::add_momentum_and_damping(NodeField& v, NodeField& out, double factor) const {
+  if (!damped_) return add_momentum(v, out);
+  damp(v, out, factor, [&] {
+    consistent_mass_->add(v.local(), out.local(), 1);
+    if (consistent_mass_damping_ != nullptr) consistent_mass_damping_->add(v.local(), out.local(), factor);
   });
+}
+
+void ElasticForces::add_momentum(NodeField& v, NodeField& out) const {
+  const PhaseScope scope(Phase::damping_apply, consistent_mass_->flops());
+  clear(out.local().subspan(out.owned().size()));
+  const auto multiply = [&] { consistent_mass_->add(v.local(), out.local(), 1); };
+  overlapped(
+      halo_, {}, v, out, [](const ElasticBlock&, BatchRange) {}, multiply);
   out.touched();
 }
 
@@ -131,7 +188,9 @@ void ElasticForces::damping_diagonal(NodeField& normal, NodeField& shear) const 
     halo_.begin_add(*field);
     halo_.end_add(*field);
   }
-  for (std::size_t i = 0; i < 3 * mass_damping_.size(); ++i) normal.owned()[i] += mass_damping_[i / 3];
+  const auto proportional = consistent_mass_damping_ != nullptr ? consistent_mass_damping_->diagonal()
+                                                                : std::span<const double>(mass_damping_);
+  for (std::size_t i = 0; i < 3 * proportional.size(); ++i) normal.owned()[i] += proportional[i / 3];
 }
 
 double ElasticForces::energy(const NodeField& x) const {
@@ -159,6 +218,8 @@ StableStep ElasticForces::stable_step(const NodeField& x) const {
     smallest.undamped = std::min(smallest.undamped, step.undamped);
     smallest.damped = std::min(smallest.damped, step.damped);
   }
+  smallest.undamped *= step_over_lumped_;
+  smallest.damped *= step_over_lumped_;
   return smallest;
 }
 
@@ -181,10 +242,11 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
     if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
       blocks_[i]->set_material(properties.material, properties.damping);
   balance_masses(mesh_, halo_, masses_, blocks_);
+  if (consistent_mass_ != nullptr) bound_consistent_step();
   if (damped_densities_.empty()) return;
   damped_densities_[static_cast<std::size_t>(region)] =
       properties.density * properties.mass_proportional_damping.value_or(0);
-  mass_damping_ = lumped(damped_densities_);
+  make_mass_damping();
 }
 
 void ElasticForces::set_activation(std::int32_t region, double activation) {
@@ -194,6 +256,8 @@ void ElasticForces::set_activation(std::int32_t region, double activation) {
 
 std::size_t ElasticForces::memory() const {
   std::size_t bytes = mass_damping_.capacity() * sizeof(double);
+  for (const auto* mass : {consistent_mass(), consistent_mass_damping()})
+    if (mass != nullptr) bytes += mass->memory();
   for (const auto& block : blocks_)
     if (block != nullptr) bytes += block->memory();
   return bytes;

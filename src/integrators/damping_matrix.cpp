@@ -8,8 +8,8 @@ constexpr std::array<double, 9> unit_block{1, 0, 0, 0, 1, 0, 0, 0, 1};
 }  // namespace
 
 AssembledDamping::AssembledDamping(const DampingOperator& damping, const char* type)
-    : damping_(damping), matrix_(damping.mesh(), damping.elastic(), type, [](const ElasticBlock& block) {
-        return block.damped();
+    : damping_(damping), matrix_(damping.mesh(), damping.elastic(), type, [&](const ElasticBlock& block) {
+        return block.damped() || damping.elastic().consistent_mass() != nullptr;
       }) {
   matrix_.declare_positive_definite(true);
   for (int column = 0; column < 3; ++column) projectors_.emplace_back(damping.mesh());
@@ -30,12 +30,14 @@ void AssembledDamping::share_projectors() {
   }
 }
 
+/// Of the P of a local node.
+double AssembledDamping::projector(LocalIndex node, std::size_t i, std::size_t j) const {
+  return projectors_[j].local()[3 * static_cast<std::size_t>(node) + i];
+}
+
 /// K_ab ← P_a K_ab P_b for every pair of the cell's nodes.
 void AssembledDamping::project_cell(const CellNodes& nodes) {
   const auto n = nodes.size();
-  const auto p = [&](std::size_t node, std::size_t i, std::size_t j) {
-    return projectors_[j].local()[3 * static_cast<std::size_t>(nodes[node]) + i];
-  };
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = 0; b < n; ++b) {
       const auto entry = [&](std::size_t i, std::size_t j) -> double& {
@@ -44,11 +46,11 @@ void AssembledDamping::project_cell(const CellNodes& nodes) {
       Mat3d kp{};
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j)
-          for (std::size_t k = 0; k < 3; ++k) kp(i, j) += entry(i, k) * p(b, k, j);
+          for (std::size_t k = 0; k < 3; ++k) kp(i, j) += entry(i, k) * projector(nodes[b], k, j);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) {
           entry(i, j) = 0;
-          for (std::size_t k = 0; k < 3; ++k) entry(i, j) += p(a, i, k) * kp(k, j);
+          for (std::size_t k = 0; k < 3; ++k) entry(i, j) += projector(nodes[a], i, k) * kp(k, j);
         }
     }
 }
@@ -67,6 +69,14 @@ void AssembledDamping::assemble() {
       matrix_.add(nodes, cell_);
     }
   }
+  if (damping_.elastic().consistent_mass() != nullptr)
+    add_consistent_masses();
+  else
+    add_lumped_masses();
+  matrix_.end();
+}
+
+void AssembledDamping::add_lumped_masses() {
   const auto mass = damping_.elastic().masses();
   const auto mass_damping = damping_.elastic().mass_damping();
   auto block = unit_block;
@@ -76,7 +86,30 @@ void AssembledDamping::assemble() {
       block[k] = mass[node] * unit_block[k] + damped * projectors_[k / 3].owned()[3 * node + k % 3];
     matrix_.add_diagonal(static_cast<LocalIndex>(node), block);
   }
-  matrix_.end();
+}
+
+/// P_a (M_ab + s C_ab) P_b of mass and its damping, and D (I − P) for what is held.
+void AssembledDamping::add_consistent_masses() {
+  const auto& mass = *damping_.elastic().consistent_mass();
+  std::array<double, 9> block{};
+  const auto add = [&](const ConsistentMass& matrix, double factor) {
+    matrix.for_each_entry([&](LocalIndex row, LocalIndex column, double value) {
+      for (std::size_t k = 0; k < 9; ++k) {
+        block[k] = 0;
+        for (std::size_t l = 0; l < 3; ++l)
+          block[k] += factor * value * projector(row, k / 3, l) * projector(column, l, k % 3);
+      }
+      matrix_.add_block(row, column, block);
+    });
+  };
+  add(mass, 1);
+  if (const auto* damping = damping_.elastic().consistent_mass_damping(); damping != nullptr)
+    add(*damping, damping_.factor());
+  for (const auto& c : damping_.constraints()) {
+    const double held = mass.diagonal()[static_cast<std::size_t>(c.node)];
+    for (std::size_t k = 0; k < 9; ++k) block[k] = held * (unit_block[k] - c.free(k / 3, k % 3));
+    matrix_.add_diagonal(c.node, block);
+  }
 }
 
 }  // namespace evert

@@ -73,6 +73,8 @@ void project_block(const Mat3d& p, double* b) {
 DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic)
     : mesh_(mesh),
       elastic_(elastic),
+      masses_(elastic.consistent_mass() != nullptr ? elastic.consistent_mass()->diagonal()
+                                                   : elastic.masses()),
       in_(mesh),
       out_(mesh),
       normal_(mesh),
@@ -99,24 +101,28 @@ void DampingOperator::set(double factor, std::span<const NodeConstraint> constra
   check(MatAssemblyEnd(mat_.get(), MAT_FINAL_ASSEMBLY));
 }
 
-/// y = M x + s P C P x in three passes over the nodes: the mass term goes where C adds to, and P is the
-/// identity but at the constrained nodes.
+/// y = M x + s P C P x in three passes over the nodes: the mass term of lumped masses goes where C adds to,
+/// and P is the identity but at the constrained nodes.
 void DampingOperator::multiply(Vec x, Vec y) const {
   auto in = in_.owned();
   auto out = out_.owned();
   const auto values = read(x, in.size());
-  const auto mass = elastic_.masses();
-  for (std::size_t node = 0, i = 0; node < mass.size(); ++node) {
+  const bool lumped = elastic_.consistent_mass() == nullptr;
+  for (std::size_t node = 0, i = 0; node < masses_.size(); ++node) {
+    const double mass = lumped ? masses_[node] : 0;
     for (const std::size_t end = i + 3; i < end; ++i) {
       in[i] = values[i];
-      out[i] = mass[node] * values[i];
+      out[i] = mass * values[i];
     }
   }
   project(constraints_, in);
   in_.touched();
-  elastic_.add_damping(in_, out_, factor_);
+  if (lumped)
+    elastic_.add_damping(in_, out_, factor_);
+  else
+    elastic_.add_momentum_and_damping(in_, out_, factor_);
   for (const auto& c : constraints_) {
-    const auto inertia = mass[static_cast<std::size_t>(c.node)] * node_value(values, c.node);
+    const auto inertia = masses_[static_cast<std::size_t>(c.node)] * node_value(values, c.node);
     set_node_value(out, c.node, inertia + c.free * (node_value(out, c.node) - inertia));
   }
   PetscScalar* result = nullptr;
@@ -126,7 +132,8 @@ void DampingOperator::multiply(Vec x, Vec y) const {
   done_reading(x, values);
 }
 
-void DampingOperator::add_damping(Vec v, Vec out, double factor) const {
+template <class Product>
+void DampingOperator::add_product(Vec v, Vec out, Product&& product) const {
   auto in = in_.owned();
   auto sum = out_.owned();
   const auto values = read(v, in.size());
@@ -134,21 +141,32 @@ void DampingOperator::add_damping(Vec v, Vec out, double factor) const {
   done_reading(v, values);
   in_.touched();
   std::fill(sum.begin(), sum.end(), 0.0);
-  elastic_.add_damping(in_, out_, factor);
+  product();
   PetscScalar* result = nullptr;
   check(VecGetArray(out, &result));
   for (std::size_t i = 0; i < sum.size(); ++i) result[i] += sum[i];
   check(VecRestoreArray(out, &result));
 }
 
+void DampingOperator::add_damping(Vec v, Vec out, double factor) const {
+  add_product(v, out, [&] { elastic_.add_damping(in_, out_, factor); });
+}
+
+void DampingOperator::add_momentum(Vec v, Vec out) const {
+  add_product(v, out, [&] { elastic_.add_momentum(in_, out_); });
+}
+
+void DampingOperator::add_momentum_and_damping(Vec v, Vec out, double factor) const {
+  add_product(v, out, [&] { elastic_.add_momentum_and_damping(in_, out_, factor); });
+}
+
 /// work(node, block) for the 3×3 diagonal block of A at each owned node, by columns.
 template <class Work>
 void DampingOperator::for_each_diagonal_block(Work&& work) const {
-  if (!diagonal_valid_) elastic_.damping_diagonal(normal_, shear_);
+  if (!diagonal_valid_ && elastic_.damped()) elastic_.damping_diagonal(normal_, shear_);
   diagonal_valid_ = true;
-  const auto mass = elastic_.masses();
   auto constraint = constraints_.begin();
-  for (std::size_t node = 0; node < mass.size(); ++node) {
+  for (std::size_t node = 0; node < masses_.size(); ++node) {
     const auto [xx, yy, zz] =
         (factor_ * node_value(normal_.owned(), static_cast<std::ptrdiff_t>(node))).components;
     const auto [yz, xz, xy] =
@@ -156,7 +174,7 @@ void DampingOperator::for_each_diagonal_block(Work&& work) const {
     std::array<double, 9> block{xx, xy, xz, xy, yy, yz, xz, yz, zz};
     if (constraint != constraints_.end() && static_cast<std::size_t>(constraint->node) == node)
       project_block((constraint++)->free, block.data());
-    for (std::size_t k = 0; k < 9; k += 4) block[k] += mass[node];
+    for (std::size_t k = 0; k < 9; k += 4) block[k] += masses_[node];
     work(node, block);
   }
 }

@@ -38,7 +38,7 @@ DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& e
   check(VecSetBlockSize(reaction_.get(), 3));
   check(VecDuplicate(reaction_.get(), projected_.out()));
   check(VecDuplicate(reaction_.get(), correction_.out()));
-  if (elastic.damped()) create_ksp();
+  if (elastic.couples_velocities()) create_ksp();
 }
 
 void DampingSolver::create_ksp() {
@@ -68,7 +68,7 @@ void DampingSolver::invalidate() {
 }
 
 void DampingSolver::add_damping(Vec v, Vec out, double factor) const {
-  if (operator_ != nullptr) operator_->add_damping(v, out, factor);
+  if (elastic_.damped()) operator_->add_damping(v, out, factor);
 }
 
 int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,
@@ -99,6 +99,10 @@ std::span<double> DampingSolver::reaction() {
 
 /// reaction_ += (M + s C) change
 void DampingSolver::react(Vec change) {
+  if (elastic_.consistent_mass() != nullptr) {
+    operator_->add_momentum_and_damping(change, reaction_.get(), factor_);
+    return;
+  }
   {
     const VecView sum(reaction_.get());
     const VecView velocity(change);

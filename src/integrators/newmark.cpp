@@ -50,12 +50,23 @@ StepReport Newmark::advance(System& system, double dt) {
   return report;
 }
 
-/// 1. (M + Δt/2 C(xⁿ)) ṽ = M vⁿ + Δt/2 f(xⁿ),  2. x̃ = xⁿ + Δt ṽ
-int Newmark::predict(System& system, double dt) {
+/// right_ = M v + Δt/2 f, of the system as it is
+void Newmark::take_momentum_and_half_impulse(const System& system, double dt) {
+  const auto f = system.f.owned();
+  if (system.elastic.consistent_mass() != nullptr) {
+    set_vec(right_.get(), [&](std::size_t i, double) { return dt / 2 * f[i]; });
+    solver_.add_momentum(system.v.vec(), right_.get());
+    return;
+  }
   const auto mass = system.masses();
   const auto v = system.v.owned();
-  const auto f = system.f.owned();
   set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
+}
+
+/// 1. (M + Δt/2 C(xⁿ)) ṽ = M vⁿ + Δt/2 f(xⁿ),  2. x̃ = xⁿ + Δt ṽ
+int Newmark::predict(System& system, double dt) {
+  const auto v = system.v.owned();
+  take_momentum_and_half_impulse(system, dt);
   std::copy(v.begin(), v.end(), predicted_.owned().begin());
   predicted_.touched();
   follow_forces(system);
@@ -73,7 +84,7 @@ int Newmark::predict(System& system, double dt) {
 /// v_change = after − before: accelerations hardly change from one half of a step to the next.
 void Newmark::remember_change(System& system, std::span<const double> after,
                               std::span<const double> before) const {
-  if (!solver_.damped()) return;
+  if (!solver_.iterates()) return;
   set_vec(system.v_change.vec(), [&](std::size_t i, double) { return after[i] - before[i]; });
 }
 
@@ -99,16 +110,14 @@ Newmark::Held Newmark::collide(System& system, double dt) {
 /// trapezoidal rule lets stiffly damped modes alternate in sign, and the reactions that friction is made of
 /// with them.
 int Newmark::correct(System& system, double dt, bool colliding) {
-  const auto mass = system.masses();
-  const auto v = system.v.owned();
   const auto f = system.f.owned();
   implicit_ = colliding ? dt : dt / 2;
-  set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * f[i]; });
+  take_momentum_and_half_impulse(system, dt);
   if (!colliding)
     solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
   system.update_forces(system.time + dt);
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
-  for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
+  for (const double m : system.mass_row_sums()) system.impulses.gravity += dt * m * system.gravity;
   follow_forces(system);
   return solver_.solve(implicit_, right_.get(), system.v, constraints_, system.v_change.vec());
 }

@@ -109,9 +109,14 @@ void NodeMatrix::add(const CellNodes& cell, std::span<const double> matrix) {
   add_rows(mat_.get(), matrix);
 }
 
+void NodeMatrix::add_block(LocalIndex row, LocalIndex column, std::span<const double, 9> block) {
+  const PetscInt i = row, j = column;
+  if (upper_only_ && global_number(j) < global_number(i)) return;
+  check(MatSetValuesBlockedLocal(mat_.get(), 1, &i, 1, &j, block.data(), ADD_VALUES));
+}
+
 void NodeMatrix::add_diagonal(LocalIndex node, std::span<const double, 9> block) {
-  rows_.assign(1, node);
-  add_rows(mat_.get(), block);
+  add_block(node, node, block);
 }
 
 void NodeMatrix::end() {

@@ -139,7 +139,7 @@ void Quasistatic::account(System& system, double dt) const {
     std::fill(field->owned().begin(), field->owned().end(), 0.0);
     field->touched();
   }
-  for (const double m : system.masses()) system.impulses.gravity += dt * m * system.gravity;
+  for (const double m : system.mass_row_sums()) system.impulses.gravity += dt * m * system.gravity;
   for (const auto& c : held_) {
     const auto force = node_value(system.f.owned(), c.node);
     system.impulses.constraint -= dt * (force - c.free * force);

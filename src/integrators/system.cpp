@@ -28,7 +28,7 @@ void System::update_forces(double t) {
 
 void System::add_loads(double t, NodeField& sum) const {
   auto load = sum.owned();
-  const auto mass = masses();
+  const auto mass = mass_row_sums();
   for (std::size_t i = 0; i < load.size(); ++i) load[i] += mass[i / 3] * gravity[i % 3];
   if (body_force) add_body_load(t, load);
   sum.touched();

@@ -200,6 +200,7 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
   definition.gravity = scene.gravity;
   set_initial_state(definition, mesh, scene, whole.bodies);
   definition.method = scene.integrator.method;
+  definition.mass = scene.integrator.mass;
   definition.quasistatic = scene.integrator.quasistatic;
   definition.fixed_time_step = scene.integrator.time_step.value_or(0);
   definition.time_step = {scene.integrator.safety, scene.integrator.max_strain_increment};

@@ -111,7 +111,9 @@ std::string complaint(const std::string& name, const LiveSolvers& live) {
   if (prefix == "damping_" && live.quasistatic)
     return "-" + name + ": has no effect, since integrator.method is quasistatic";
   if (prefix == "damping_" && !is_live(prefix, live))
-    return "-" + name + ": has no effect, since nothing in this scene is damped (bodies.NAME.damping)";
+    return "-" + name +
+           ": has no effect, since nothing in this scene is damped (bodies.NAME.damping) and masses are "
+           "lumped (integrator.mass)";
   if (prefix == "quasistatic_" && !is_live(prefix, live))
     return "-" + name + ": has no effect, since integrator.method is not quasistatic";
   const auto match = nearest_match(name, well_known_options());
@@ -131,7 +133,7 @@ const std::vector<std::string>& process_options() {
 }
 
 LiveSolvers solvers_of(const Simulation& simulation) {
-  return {!simulation.quasistatic() && simulation.elastic().damped(), simulation.quasistatic()};
+  return {!simulation.quasistatic() && simulation.elastic().couples_velocities(), simulation.quasistatic()};
 }
 
 void apply_petsc_block(const SceneConfig& scene) {

@@ -40,6 +40,14 @@ const Table<IntegratorConfig>& integrator_table() {
                                                {"quasistatic", IntegrationMethod::quasistatic,
                                                 "states of rest, without inertia, damping and obstacles"}}),
                     "newmark", "Time stepping.")
+          .optional("mass", &IntegratorConfig::mass,
+                    one_of<MassForm>({{"lumped", MassForm::lumped,
+                                       "a mass at each node: cheapest, and the only one with obstacles"},
+                                      {"consistent", MassForm::consistent,
+                                       "the integral of density times two shape functions: accelerations of "
+                                       "the order of the element, for smaller steps and a solve in each "
+                                       "half of a step"}}),
+                    "consistent", "Of newmark: how the mass of a cell acts on its nodes.")
           .optional("time_step", &IntegratorConfig::time_step, word_or_number("auto", "s", above(0)), "1e-4",
                     "auto: the largest stable and accurate step, found anew as the state changes; with "
                     "quasistatic, one step from each frame, event or other time that is hit to the next.")
@@ -76,7 +84,7 @@ const Table<IntegratorConfig>& integrator_table() {
                 fail(*value, join(path, key),
                      std::string("has no effect: it goes with 'method: ") + method + "'");
             };
-            for (const char* key : {"safety", "max_strain_increment"})
+            for (const char* key : {"mass", "safety", "max_strain_increment"})
               if (statics) refuse(key, "newmark");
             for (const char* key : {"load_steps", "tangent", "untangle"})
               if (!statics) refuse(key, "quasistatic");
@@ -128,6 +136,10 @@ void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*pat
   if (scene.checkpoint && scene.checkpoint->every_simulated)
     expect_countable(*scene.checkpoint->every_simulated, scene.end_time, map, "checkpoint",
                      "every_simulated");
+  if (scene.integrator.mass == MassForm::consistent && !scene.obstacles.empty())
+    fail(*map.find("obstacles"), "obstacles",
+         "is not possible with 'integrator.mass: consistent': impacts and friction need masses of nodes, "
+         "'lumped'");
   if (scene.bodies.empty()) fail(*map.find("bodies"), "bodies", "must name at least one body");
   for (const auto& [name, value] : scene.petsc) {
     const auto& entry = *map.find("petsc")->find(name);

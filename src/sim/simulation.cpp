@@ -5,6 +5,7 @@
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -65,11 +66,54 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[9], values[10], values[11]}};
 }
 
+/// Contact and friction know masses of nodes, and what is at rest knows none.
+MassForm possible_mass(const SimulationDefinition& definition) {
+  if (definition.mass == MassForm::consistent &&
+      (!definition.obstacles.empty() || definition.method == IntegrationMethod::quasistatic))
+    throw UserError("consistent masses go neither with obstacles nor with quasistatic: must be lumped");
+  return definition.mass;
+}
+
+/// What moves, this rank's share.
+struct Motion {
+  double kinetic_energy = 0;
+  Vec3d momentum{}, angular_momentum{};
+};
+
+Motion motion_of_lumped(const System& system) {
+  Motion motion;
+  const auto mass = system.masses();
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const auto x = node_value(system.x.owned(), static_cast<std::ptrdiff_t>(i));
+    const auto v = node_value(system.v.owned(), static_cast<std::ptrdiff_t>(i));
+    motion.kinetic_energy += 0.5 * mass[i] * dot(v, v);
+    motion.momentum += mass[i] * v;
+    motion.angular_momentum += mass[i] * cross(x, v);
+  }
+  return motion;
+}
+
+/// Collective.
+Motion motion_of_consistent(const System& system) {
+  NodeField velocities(system.mesh), momenta(system.mesh);
+  std::ranges::copy(system.v.owned(), velocities.owned().begin());
+  velocities.touched();
+  system.elastic.add_momentum(velocities, momenta);
+  Motion motion;
+  for (LocalIndex node = 0; node < system.mesh.owned_nodes; ++node) {
+    const auto momentum = node_value(momenta.owned(), node);
+    motion.kinetic_energy += 0.5 * dot(node_value(system.v.owned(), node), momentum);
+    motion.momentum += momentum;
+    motion.angular_momentum += cross(node_value(system.x.owned(), node), momentum);
+  }
+  return motion;
+}
+
 }  // namespace
 
 Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
     : mesh_(std::move(mesh)),
-      elastic_(mesh_, definition.properties),
+      elastic_(mesh_, definition.properties, possible_mass(definition)),
       collisions_(std::move(definition.obstacles), elastic_.masses()),
       prescribed_(std::move(definition.prescribed)),
       system_(mesh_, elastic_, collisions_, prescribed_, definition.gravity,
@@ -206,19 +250,13 @@ GlobalIndex Simulation::inverted_points() const {
 }
 
 Measurements Simulation::measure() const {
-  const auto mass = elastic_.masses();
-  double kinetic = 0;
+  const auto [kinetic, momentum, angular] =
+      elastic_.consistent_mass() == nullptr ? motion_of_lumped(system_) : motion_of_consistent(system_);
+  const auto mass = elastic_.mass_row_sums();
   double potential = 0;
-  Vec3d momentum{};
-  Vec3d angular{};
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    const auto x = node_value(system_.x.owned(), static_cast<std::ptrdiff_t>(i));
-    const auto v = node_value(system_.v.owned(), static_cast<std::ptrdiff_t>(i));
-    kinetic += 0.5 * mass[i] * dot(v, v);
-    potential -= mass[i] * dot(system_.gravity, x);
-    momentum += mass[i] * v;
-    angular += mass[i] * cross(x, v);
-  }
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    potential -=
+        mass[i] * dot(system_.gravity, node_value(system_.x.owned(), static_cast<std::ptrdiff_t>(i)));
   std::array<double, 9> sums{kinetic,     elastic_.energy(system_.x),
                              potential,   momentum[0],
                              momentum[1], momentum[2],

@@ -1,6 +1,7 @@
 // The same scene on any number of ranks, twice, and restarted: the same answer.
 #include <gtest/gtest.h>
 
+#include "tests/support/petsc_options.hpp"
 #include "tests/support/scenes.hpp"
 #include <cmath>
 
@@ -54,6 +55,51 @@ TEST(RanksAgree, ARestoredRunIsBitwiseEqual) {
   restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
   EXPECT_EQ(restarted.simulation->steps(), 37);
   EXPECT_EQ(test::after_steps(*restarted.simulation, 100), uninterrupted);
+}
+
+/// A held and damped beam of quadratic tetrahedra with consistent masses.
+const std::string consistent_beam = R"(
+name: consistent beam
+end_time: 1
+gravity: [0, -9.81, 0]
+bodies:
+  beam:
+    mesh: {generate: box, size: [0.6, 0.2, 0.2], cells: [3, 1, 1], cell: tet6}
+    order: 2
+    density: 1000
+    velocity: [0, 1, 0]
+    material: {model: neo_hookean, youngs_modulus: 5.0e4, poissons_ratio: 0.4}
+    damping: {model: rotated, stiffness_proportional: 1.0e-3, mass_proportional: 2}
+constraints: [{body: beam, node_set: x_min, velocity: [[0, 0, 0, 0], [0.1, 0, 0, 1]]}]
+integrator: {mass: consistent}
+)";
+
+TEST(ConsistentRanksAgree, PositionsAfterTenStepsEqualThoseOfOneRank) {
+  for (const char* type : {"shell", "sbaij"}) {
+    const test::Options options{{"-damping_mat_type", type}, {"-damping_ksp_rtol", "1e-11"}};
+    const auto alone = test::after_steps(*test::build(consistent_beam, {}, PETSC_COMM_SELF).simulation, 10);
+    auto scene = test::build(consistent_beam);
+    const auto together = test::after_steps(*scene.simulation, 10);
+    EXPECT_LE(test::largest_difference(alone, together), 1e-9 * 0.6);
+    const auto now = scene.simulation->measure();
+    const Vec3d given = now.gravity_impulse + now.constraint_impulse + now.damping_impulse;
+    const Vec3d at_start{0, 1000 * 0.024, 0};
+    EXPECT_LE(norm(now.momentum - at_start - given), 1e-7 * norm(now.gravity_impulse));
+    EXPECT_GT(norm(now.constraint_impulse), 0);
+  }
+}
+
+TEST(ConsistentRanksAgree, ARestoredRunIsBitwiseEqual) {
+  auto whole = test::build(consistent_beam);
+  test::after_steps(*whole.simulation, 3);
+  const auto [x, v, changes] = whole.simulation->node_state();
+  const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
+      kept_changes(changes.begin(), changes.end());
+  const auto scalars = whole.simulation->state_scalars();
+  const auto uninterrupted = test::after_steps(*whole.simulation, 5);
+  auto restarted = test::build(consistent_beam);
+  restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
+  EXPECT_EQ(test::after_steps(*restarted.simulation, 5), uninterrupted);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
+#include "evert/forces/consistent_mass.hpp"
 #include "evert/forces/elastic_block.hpp"
+#include "evert/forces/mass_form.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
 
 #include <memory>
@@ -25,7 +27,8 @@ class ElasticForces {
  public:
   /// Collective. One ElasticBlock per entry of `mesh.cells`, with `properties` of its region; a UserError of
   /// any rank (cells without volume) is thrown on all.
-  ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties);
+  ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties,
+                MassForm mass = MassForm::lumped);
 
   /// Collective. Brings the ghosts of `x` up to date, then `f` = elastic forces at x [N], summed over ranks
   /// on owned nodes; C(x) is kept for apply_damping.  PHYSICS 5: F and its SVD once per step, here
@@ -35,15 +38,23 @@ class ElasticForces {
   /// scratch.
   void add_damping(NodeField& v, NodeField& out, double factor) const;
 
+  /// Collective. Of consistent masses: `out` += M v on owned nodes; ghosts as in add_damping.
+  void add_momentum(NodeField& v, NodeField& out) const;
+  /// Collective. Of consistent masses: `out` += M v + factor · C v, with one exchange of ghosts for both.
+  void add_momentum_and_damping(NodeField& v, NodeField& out, double factor) const;
+
   /// Collective. The symmetric 3×3 diagonal blocks of C at owned nodes: xx yy zz in `normal`, yz xz xy in
   /// `shear`. Their ghosts are scratch.
   void damping_diagonal(NodeField& normal, NodeField& shear) const;
 
-  /// The part of C that is proportional to mass, per owned node [kg/s]; empty when no body has any.
+  /// The part of C that is proportional to mass, per owned node [kg/s]; empty when no body has any. Of
+  /// consistent masses the sums of its rows: what it has of the resultant.
   [[nodiscard]] std::span<const double> mass_damping() const { return mass_damping_; }
 
   /// True when anything of any rank is damped.
   [[nodiscard]] bool damped() const { return damped_; }
+  /// True where the velocities of nodes depend on the momenta of others: to find them takes a solve.
+  [[nodiscard]] bool couples_velocities() const { return damped_ || consistent_mass_ != nullptr; }
 
   // Sums over this rank's cells, at positions whose ghosts are up to date:
   [[nodiscard]] double energy(const NodeField& x) const;
@@ -53,8 +64,18 @@ class ElasticForces {
   /// Smallest signed stretch per cell of block `block`.
   void min_stretch(const NodeField& x, std::size_t block, std::span<double> per_cell) const;
 
-  /// Lumped masses of the owned nodes [kg].
+  /// Lumped masses of the owned nodes [kg], whatever M is.
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
+  /// M 1 per owned node [kg]: what a node has of the weight, and its velocity of the momentum. The lumped
+  /// masses themselves, unless M is consistent.
+  [[nodiscard]] std::span<const double> mass_row_sums() const {
+    return consistent_mass_ != nullptr ? consistent_mass_->row_sums() : std::span<const double>(masses_);
+  }
+  /// M and the part of C that is proportional to it, of consistent masses; else nullptr.
+  [[nodiscard]] const ConsistentMass* consistent_mass() const { return consistent_mass_.get(); }
+  [[nodiscard]] const ConsistentMass* consistent_mass_damping() const {
+    return consistent_mass_damping_.get();
+  }
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
   [[nodiscard]] const Halo& halo() const { return halo_; }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
@@ -68,6 +89,13 @@ class ElasticForces {
  private:
   /// Collective. What the cells contribute to the owned nodes, each with the density of its region.
   [[nodiscard]] std::vector<double> lumped(std::span<const double> densities);
+  /// add_damping with what else is to be done while ghosts are at hand.
+  template <class AtBoundary>
+  void damp(NodeField& v, NodeField& out, double factor, AtBoundary&& at_boundary) const;
+  /// Collective. With consistent masses: what the stable step of lumped ones is to be multiplied by.
+  void bound_consistent_step();
+  /// Collective. The part of C that is proportional to mass, of damped_densities_.
+  void make_mass_damping();
 
   const DistributedMesh& mesh_;
   Halo halo_;
@@ -76,7 +104,11 @@ class ElasticForces {
   std::vector<double> masses_;
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
-  mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
+  std::unique_ptr<ConsistentMass> consistent_mass_, consistent_mass_damping_;  // where asked for
+  std::vector<double> densities_;      // per region, only with consistent masses
+  double lumped_over_consistent_ = 1;  // masses, the largest ratio in any cell
+  double step_over_lumped_ = 1;        // of the stable step
+  mutable NodeField scratch_;          // columns of the diagonal blocks on their way to the owners
   bool damped_ = false;
 };
 

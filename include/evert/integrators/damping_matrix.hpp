@@ -19,7 +19,10 @@ class AssembledDamping {
 
  private:
   void share_projectors();
+  [[nodiscard]] double projector(LocalIndex node, std::size_t i, std::size_t j) const;
   void project_cell(const CellNodes& nodes);
+  void add_lumped_masses();
+  void add_consistent_masses();
 
   const DampingOperator& damping_;
   std::vector<NodeField> projectors_;  // the three columns of P per local node

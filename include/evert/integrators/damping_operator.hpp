@@ -10,7 +10,9 @@ namespace evert {
 
 /// The operator of the implicit velocity solves, A = M + s P C P, as a matrix-free PETSc matrix (MATSHELL).
 /// C is the damping operator at the positions of the last force update, s = Δt/2, P the projector off the
-/// constrained velocities; P (M + s C) P + M (I − P) is the same thing since M is lumped.  PHYSICS 5
+/// constrained velocities; P (M + s C) P + M (I − P) is the same thing where M is lumped.  PHYSICS 5
+///
+/// Where M is consistent, A = P (M + s C) P + D (I − P) with D the diagonal of M.
 class DampingOperator {
  public:
   /// Collective.
@@ -25,8 +27,13 @@ class DampingOperator {
 
   /// Collective. y = A x, Vecs of 3 values per owned node.
   void multiply(Vec x, Vec y) const;
-  /// Collective. `out` += factor · C v on owned nodes, constraints left aside.
+  // Collective. On owned nodes, constraints left aside; the last two of consistent masses:
+  /// `out` += factor · C v
   void add_damping(Vec v, Vec out, double factor) const;
+  /// `out` += M v
+  void add_momentum(Vec v, Vec out) const;
+  /// `out` += M v + factor · C v
+  void add_momentum_and_damping(Vec v, Vec out, double factor) const;
   /// Collective. The inverses of A's owned 3×3 diagonal blocks, 9 numbers by columns each.
   [[nodiscard]] std::span<const double> inverse_diagonal() const;
   /// Collective. `out` = A's diagonal.
@@ -41,11 +48,14 @@ class DampingOperator {
   [[nodiscard]] Mat mat() const { return mat_.get(); }
 
  private:
+  template <class Product>
+  void add_product(Vec v, Vec out, Product&& product) const;
   template <class Work>
   void for_each_diagonal_block(Work&& work) const;
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
+  std::span<const double> masses_;  // the diagonal of M
   double factor_ = 0;
   std::span<const NodeConstraint> constraints_;
   mutable NodeField in_, out_;

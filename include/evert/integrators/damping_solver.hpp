@@ -42,8 +42,11 @@ class DampingSolver {
 
   /// Collective. `out` += factor · C v.
   void add_damping(Vec v, Vec out, double factor) const;
+  /// Collective. Of consistent masses: `out` += M v.
+  void add_momentum(Vec v, Vec out) const { operator_->add_momentum(v, out); }
 
-  [[nodiscard]] bool damped() const { return operator_ != nullptr; }
+  /// False where a solve is a division by the lumped masses.
+  [[nodiscard]] bool iterates() const { return operator_ != nullptr; }
 
  private:
   void create_ksp();
@@ -56,11 +59,11 @@ class DampingSolver {
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
-  std::unique_ptr<DampingOperator> operator_;    // none where nothing is damped: the solve is then a division
+  std::unique_ptr<DampingOperator> operator_;    // none where iterates() is false
   std::unique_ptr<AssembledDamping> assembled_;  // with -damping_mat_type other than shell
   KspHandle ksp_;
   VecHandle reaction_, projected_, correction_;
-  VecHandle direction_, image_;  // of go_along() and its product, only where something is damped
+  VecHandle direction_, image_;  // of go_along() and its product, only where iterates()
   bool reacted_ = true;          // reaction_ knows of correction_
   double factor_ = 0;            // s of the last solve
   double rtol_ = 0, atol_ = 0;

@@ -28,6 +28,7 @@ class Newmark {
     bool colliding = false;
     bool prescribed = false;
   };
+  void take_momentum_and_half_impulse(const System& system, double dt);
   int predict(System& system, double dt);
   Held collide(System& system, double dt);
   int correct(System& system, double dt, bool colliding);

@@ -23,6 +23,9 @@ class NodeMatrix {
   void begin();
   /// Not collective. Adds the dense row-major `matrix` of the nodes `cell` (local numbers).
   void add(const CellNodes& cell, std::span<const double> matrix);
+  /// Not collective. Adds the 3×3 row-major `block` that couples two local nodes of a cell. A symmetric
+  /// format takes one block of a pair and its mirror image: give it both.
+  void add_block(LocalIndex row, LocalIndex column, std::span<const double, 9> block);
   /// Not collective. Adds the 3×3 `block` to the diagonal block of an owned node.
   void add_diagonal(LocalIndex node, std::span<const double, 9> block);
   /// Collective.

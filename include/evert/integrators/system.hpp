@@ -39,6 +39,7 @@ struct System {
   System& operator=(const System&) = delete;
 
   [[nodiscard]] std::span<const double> masses() const { return elastic.masses(); }
+  [[nodiscard]] std::span<const double> mass_row_sums() const { return elastic.mass_row_sums(); }
   /// Collective. f = elastic forces at x and loads at `t` [s], and C(x). To be called whenever x, a material
   /// or gravity changes.
   void update_forces(double t);

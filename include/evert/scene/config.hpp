@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/core/number_array.hpp"
+#include "evert/forces/mass_form.hpp"
 #include "evert/integrators/method.hpp"
 #include "evert/materials/damping.hpp"
 #include "evert/materials/lame.hpp"
@@ -277,6 +278,7 @@ struct OutputConfig {
 
 struct IntegratorConfig {
   IntegrationMethod method = IntegrationMethod::newmark;
+  MassForm mass = MassForm::lumped;   ///< consistent only without obstacles
   std::optional<double> time_step;    ///< [s]; empty: auto
   double safety = 0.9;                ///< [-] of the stable step, with auto
   double max_strain_increment = 0.1;  ///< [-] largest change of strain in one step, with auto

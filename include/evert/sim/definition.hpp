@@ -32,8 +32,9 @@ struct SimulationDefinition {
   std::vector<Vec3d> initial_positions;   ///< per owned node [m]; empty: at rest shape
   std::vector<Vec3d> initial_velocities;  ///< per owned node [m/s]; empty: at rest
   IntegrationMethod method = IntegrationMethod::newmark;
-  QuasistaticOptions quasistatic;  ///< of that method
-  double fixed_time_step = 0;      ///< [s]; 0: chosen by TimeStepControl
+  MassForm mass = MassForm::lumped;  ///< consistent: without obstacles, and not quasistatic
+  QuasistaticOptions quasistatic;    ///< of that method
+  double fixed_time_step = 0;        ///< [s]; 0: chosen by TimeStepControl
   TimeStepOptions time_step;
 };
 

@@ -41,6 +41,7 @@ using StateScalar = std::pair<std::string, double>;
 /// Owns everything that moves; one call advances it. All calls are collective unless said otherwise.
 class Simulation {
  public:
+  /// Throws UserError for a definition that cannot be.
   Simulation(DistributedMesh mesh, SimulationDefinition definition);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

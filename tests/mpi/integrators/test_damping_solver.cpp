@@ -256,7 +256,7 @@ TEST_F(DampedBox, WithoutDampingTheSolveIsADivision) {
   properties_.front().damping = {};
   ElasticForces undamped(mesh_, properties_);
   DampingSolver solver(mesh_, undamped);
-  EXPECT_FALSE(solver.damped());
+  EXPECT_FALSE(solver.iterates());
   EXPECT_EQ(solver.solve(0.1, right_.get(), v_, {}), 0);
   const PetscScalar* right = nullptr;
   check(VecGetArrayRead(right_.get(), &right));

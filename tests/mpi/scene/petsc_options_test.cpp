@@ -87,7 +87,9 @@ TEST_F(PetscOptionsTest, of_the_process_pass) {
 TEST_F(PetscOptionsTest, of_solves_that_are_not_made_have_no_effect) {
   command_line("-damping_ksp_rtol 1e-9");
   EXPECT_EQ(complaint(false, false),
-            "-damping_ksp_rtol: has no effect, since nothing in this scene is damped (bodies.NAME.damping)");
+            "-damping_ksp_rtol: has no effect, since nothing in this scene is damped (bodies.NAME.damping) "
+            "and masses "
+            "are lumped (integrator.mass)");
   EXPECT_EQ(complaint(true, false), "nothing");
 }
 

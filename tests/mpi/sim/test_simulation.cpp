@@ -1,6 +1,7 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
 #include "evert/core/log.hpp"
+#include "evert/mesh/generators.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +72,30 @@ TEST(Simulation, StopsWhereTheStepIsLostInTheTime) {
     const auto error = simulation_error_of([&] { built.simulation->step(dt); });
     EXPECT_NE(error.find("t = 0.001 s, step 1"), std::string::npos) << dt << ": " << error;
   }
+}
+
+/// A definition made by hand, which no scene has checked.
+TEST(Simulation, RefusesConsistentMassesWithContactOrAtRest) {
+  const auto made_with = [](const std::function<void(SimulationDefinition&)>& change) {
+    SimulationDefinition definition;
+    definition.properties = {{1000, NeoHookean{.lame = Lame::from_young_poisson(1e5, 0.3)}, {}}};
+    definition.mass = MassForm::consistent;
+    change(definition);
+    auto mesh = distribute(PETSC_COMM_WORLD, generate_box({1, 1, 1}, {4, 2, 2}, BoxCells::tet6));
+    for (LocalIndex i = 0; i < mesh.owned_nodes; ++i)
+      definition.initial_positions.push_back(mesh.rest_positions[static_cast<std::size_t>(i)]);
+    const Simulation simulation(std::move(mesh), std::move(definition));
+  };
+  EXPECT_NO_THROW(made_with([](SimulationDefinition&) {}));
+  EXPECT_THROW(made_with([](SimulationDefinition& definition) {
+                 definition.obstacles.push_back(std::make_unique<Obstacle>(
+                     "ground", 0.1, std::make_unique<HalfSpace>(Vec3d{}, Vec3d{0, 1, 0}),
+                     std::make_unique<UniformMotion>(RigidState{})));
+               }),
+               UserError);
+  EXPECT_THROW(
+      made_with([](SimulationDefinition& definition) { definition.method = IntegrationMethod::quasistatic; }),
+      UserError);
 }
 
 TEST(Simulation, AllRanksLearnThatOneWantsToStop) {

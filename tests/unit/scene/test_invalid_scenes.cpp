@@ -30,7 +30,7 @@ const std::vector<Mistake> mistakes{
     {"misspelt_top_key",
      "gravity:", "gravitiy:", "scene.yaml:3: gravitiy: unknown key (did you mean 'gravity'?)"},
     {"foreign_key", "safety: 0.5", "color: red",
-     "scene.yaml:43: integrator.color: unknown key; known here are method, time_step, safety, "
+     "scene.yaml:43: integrator.color: unknown key; known here are method, mass, time_step, safety, "
      "max_strain_increment, load_steps, tangent or untangle"},
     {"misspelt_tag", "shape: sphere", "shpe: sphere",
      "scene.yaml:36: obstacles.ball.shpe: unknown key (did you mean 'shape'?)"},
