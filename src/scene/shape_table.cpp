@@ -4,6 +4,7 @@
 
 #include "solid.hpp"
 #include "tables.hpp"
+#include <cmath>
 #include <functional>
 #include <type_traits>
 
@@ -243,6 +244,7 @@ void check_filled(const FilledShape& filled, const Value& map, const std::string
   } catch (const UserError& error) {
     fail(map, path, error.what());
   }
+  if (std::isinf(cubes)) fail(map, path, "goes on for ever: only a shape that has an end can be filled");
   const auto& edge = *map.find("edge_length");
   if (!(cubes <= most_cubes))
     fail(edge, join(path, "edge_length"),

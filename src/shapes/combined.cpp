@@ -15,17 +15,20 @@ const ImplicitSurface& extreme(const std::vector<Solid>& parts, double sign, con
   });
 }
 
-/// φ at the middle of a cell says how far it is to the inside; a cell that cannot hold any is not looked
-/// into, any other is cut into eight, down to a thousandth of the box.
-bool holds_any(const ImplicitSurface& solid, const Vec3d& middle, const Vec3d& half, int depth) {
+/// Looks into a cell of a box: at its middle, and where the level set says that the nearest inside is,
+/// `depth_inside` beyond the surface, which finds what is thinner than a cell. A cell that is farther from
+/// the inside than it reaches holds none; any other is cut into eight.
+bool holds_any(const ImplicitSurface& solid, const Vec3d& middle, const Vec3d& half, double depth_inside,
+               int depth) {
   const double phi = solid.signed_distance(middle);
   if (phi < 0) return true;
+  if (solid.signed_distance(middle - (phi + depth_inside) * solid.normal(middle)) < 0) return true;
   if (depth == 0 || phi >= norm(half)) return false;
   for (int octant = 0; octant < 8; ++octant) {
     Vec3d step = 0.5 * half;
     for (std::size_t k = 0; k < 3; ++k)
       if (((octant >> k) & 1) != 0) step[k] = -step[k];
-    if (holds_any(solid, middle + step, 0.5 * half, depth - 1)) return true;
+    if (holds_any(solid, middle + step, 0.5 * half, depth_inside, depth - 1)) return true;
   }
   return false;
 }
@@ -109,12 +112,14 @@ Box3 placed(const Box3& box, const Mat3d& rotation, const Vec3d& center) {
 }
 
 void require_not_empty(const ImplicitSurface& solid, const std::string& name) {
-  constexpr int depth = 10;
+  constexpr int depth = 6;
+  constexpr double least_thickness = 1e-6;  // of the box
   const auto box = solid.bounds();
   const auto half = 0.5 * (box.upper - box.lower);
   const bool is_empty = !(box.lower[0] <= box.upper[0]);
   if (!is_empty && !std::isfinite(norm(half))) return;
-  if (is_empty || !holds_any(solid, 0.5 * (box.lower + box.upper), half, depth))
+  const auto middle = 0.5 * (box.lower + box.upper);
+  if (is_empty || !holds_any(solid, middle, half, least_thickness * norm(half), depth))
     throw UserError(name + " is empty: no point is inside");
 }
 

@@ -89,8 +89,8 @@ class Placed final : public ImplicitSurface {
 /// Around a box that is turned about the origin, then moved.
 [[nodiscard]] Box3 placed(const Box3& box, const Mat3d& rotation, const Vec3d& center);
 
-/// Throws UserError when no point of a grid over its bounds is inside: what shapes combine to can be empty.
-/// `name` is for the message. Without bounds it is taken to be not.
+/// Throws UserError when no point is inside, or only what is thinner than 1e-6 of the bounds: what shapes
+/// combine to can be empty. `name` is for the message. A solid without end is taken to be not.
 void require_not_empty(const ImplicitSurface& solid, const std::string& name);
 
 }  // namespace evert

@@ -63,6 +63,12 @@ TEST(Shapes, take_files_from_the_folder_of_the_scene) {
   EXPECT_EQ(surface(obstacle(keys, {"obstacles.it.of.0.surface=other.stl"})), "other.stl");
 }
 
+TEST(Shapes, that_have_no_end_are_not_filled) {
+  EXPECT_EQ(complaint(testing::changed(least_scene, "generate: ball, radius: 1",
+                                       "generate: union, of: [{shape: half_space}]")),
+            "scene.yaml:5: bodies.ball.mesh: goes on for ever: only a shape that has an end can be filled");
+}
+
 TEST(Shapes, are_refused_where_they_are_written) {
   const std::string at = "scene.yaml:8: obstacles.it";
   EXPECT_EQ(wrong("shape: gear, teeth: 9, root_radius: 0.4, tip_radius: 0.4, width: 0.2"),

@@ -86,6 +86,10 @@ TEST(Combined, EmptyOnesAreRefused) {
   EXPECT_EQ(complaint(Intersection(parts(Sphere(1), at({1.99, 0, 0}, Sphere(1))))), "nothing")
       << "a thin lens";
   EXPECT_EQ(complaint(Box({1, 1e-6, 1})), "nothing");
+  EXPECT_EQ(complaint(*difference(parts(Box({1, 1, 1}), Box({1, 1, 1})))), empty);
+  EXPECT_EQ(complaint(*difference(parts(Box({1, 1, 1}), Box({2, 0.9999, 2})))), "nothing")
+      << "two thin plates";
+  EXPECT_EQ(complaint(*difference(parts(Sphere(1), Sphere(0.9999)))), "nothing") << "a thin shell";
   EXPECT_EQ(complaint(HalfSpace({}, {0, 1, 0})), "nothing");
 }
 
