@@ -124,8 +124,7 @@ void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& b
 
 void report_surroundings(Report& report, const SceneConfig& scene, const DistributedMesh& mesh) {
   for (const auto& obstacle : scene.obstacles) {
-    const bool plane = std::holds_alternative<HalfSpaceConfig>(obstacle.shape);
-    report.line("obstacles", obstacle.name + (plane ? ": half_space" : ": sphere") +
+    report.line("obstacles", obstacle.name + ": " + name_of(obstacle.shape.solid) +
                                  formatted(", friction %g", obstacle.friction));
   }
   for (std::size_t c = 0; c < scene.constraints.size(); ++c) {

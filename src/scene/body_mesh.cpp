@@ -1,7 +1,9 @@
 #include "evert/scene/body_mesh.hpp"
 
 #include "evert/mesh/mesh_reader.hpp"
+#include "evert/mesh/repair.hpp"
 
+#include "solid.hpp"
 #include <type_traits>
 
 namespace evert {
@@ -15,11 +17,15 @@ Mesh make(const BoxMesh& box) {
   return mesh;
 }
 
-Mesh make(const BallMesh& m) { return generate(ball(m.radius), m.edge_length); }
-Mesh make(const TorusMesh& m) { return generate(torus(m.major_radius, m.minor_radius), m.edge_length); }
-Mesh make(const CylinderMesh& m) { return generate(cylinder(m.radius, m.length), m.edge_length); }
-Mesh make(const CapsuleMesh& m) { return generate(capsule(m.radius, m.length), m.edge_length); }
-Mesh make(const EllipsoidMesh& m) { return generate(ellipsoid(m.radii), m.edge_length); }
+Mesh make(const FilledShape& filled) {
+  Surfaces surfaces;
+  read_surfaces(filled.solid, surfaces);
+  auto mesh =
+      generate(*make_solid({.solid = filled.solid}, surfaces), name_of(filled.solid), filled.edge_length);
+  // of fingers thinner than an edge, beads would be left
+  if (std::holds_alternative<FigureShape>(filled.solid)) keep_largest_component(mesh);
+  return mesh;
+}
 
 }  // namespace
 

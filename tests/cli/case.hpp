@@ -39,6 +39,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> material_cases();
 [[nodiscard]] std::vector<Case> quasistatic_cases();
 [[nodiscard]] std::vector<Case> mass_cases();
+[[nodiscard]] std::vector<Case> shape_cases();
 
 // --- good input to spoil
 
