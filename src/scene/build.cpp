@@ -5,6 +5,7 @@
 #include "evert/scene/load.hpp"
 #include "evert/scene/material.hpp"
 
+#include "motion.hpp"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,9 +33,10 @@ std::optional<double> mass_damping_of(const std::optional<DampingConfig>& config
   return config->mass_proportional;
 }
 
-std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config) {
+/// Collective.
+std::unique_ptr<Obstacle> obstacle_of(MPI_Comm comm, const ObstacleConfig& config) {
   std::unique_ptr<ImplicitSurface> surface;
-  RigidState start{.velocity = config.velocity};
+  RigidState start;
   if (const auto* plane = std::get_if<HalfSpaceConfig>(&config.shape)) {
     surface = std::make_unique<HalfSpace>(plane->point, plane->normal);
   } else {
@@ -43,7 +45,7 @@ std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config) {
     start.origin = sphere.center;
   }
   return std::make_unique<Obstacle>(config.name, config.friction, std::move(surface),
-                                    std::make_unique<UniformMotion>(start));
+                                    motion_of(comm, config, start));
 }
 
 PrescribedNodes prescribed_of(const ConstraintConfig& config, const LocalNodeSet& nodes) {
@@ -190,7 +192,7 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
   for (std::size_t r = 0; r < whole.region_body.size(); ++r)
     definition.properties.push_back(
         properties_of(scene.bodies[static_cast<std::size_t>(whole.region_body[r])], whole.region_group[r]));
-  for (const auto& obstacle : scene.obstacles) definition.obstacles.push_back(obstacle_of(obstacle));
+  for (const auto& obstacle : scene.obstacles) definition.obstacles.push_back(obstacle_of(comm, obstacle));
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
     definition.prescribed.push_back(prescribed_of(scene.constraints[c], mesh.node_sets[c]));
   definition.activations = activations_of(scene, whole.region_body, whole.region_group);

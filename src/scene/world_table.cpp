@@ -129,7 +129,13 @@ const Table<ObstacleConfig>& obstacle_table() {
           .alternative("half_space", &ObstacleConfig::shape, half_space_table())
           .alternative("sphere", &ObstacleConfig::shape, sphere_table())
           .optional("friction", &ObstacleConfig::friction, friction_type(), "0.3", "Coulomb coefficient.")
-          .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.");
+          .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.")
+          .optional("motion", &ObstacleConfig::motion, table_of(motion_table()),
+                    "{angular_velocity: [0, 0, 2]}", "Any other motion, in the place of velocity.")
+          .then([](ObstacleConfig& /*obstacle*/, const Value& map, const std::string& path) {
+            if (map.find("velocity") != nullptr && map.find("motion") != nullptr)
+              fail(map, path, "'velocity' and 'motion' exclude each other: write 'motion: {velocity: ...}'");
+          });
   return table;
 }
 

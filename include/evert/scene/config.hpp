@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/contact/keyframed_motion.hpp"
 #include "evert/core/number_array.hpp"
 #include "evert/integrators/method.hpp"
 #include "evert/materials/damping.hpp"
@@ -208,11 +209,25 @@ struct SphereConfig {
   double radius = 0;  ///< [m] > 0
 };
 
+/// How an obstacle moves from the place that its shape has at t = 0: steadily, by a table, or to and fro.
+struct MotionConfig {
+  std::optional<Vec3d> about;      ///< [m] the point that it turns about; empty: the middle of the shape
+  Vec3d velocity{};                ///< [m/s] of that point
+  Vec3d angular_velocity{};        ///< [rad/s]
+  std::vector<PoseKey> keyframes;  ///< displacements; empty: none, or those of the file
+  std::string file;                ///< with them; relative to the scene file; resolved here
+  Vec3d amplitude{};               ///< [m] of an oscillation
+  Vec3d angle{};                   ///< [rad] of an oscillation, along its axis
+  double frequency = 0;            ///< [Hz] of an oscillation; 0: there is none
+  double phase = 0;                ///< [rad]
+};
+
 struct ObstacleConfig {
   std::string name;
   std::variant<HalfSpaceConfig, SphereConfig> shape;
   double friction = 0;  ///< [-] Coulomb coefficient ≥ 0
-  Vec3d velocity{};     ///< [m/s] constant
+  Vec3d velocity{};     ///< [m/s] constant; not with motion
+  std::optional<MotionConfig> motion;
 };
 
 /// Nodes whose position at rest, after the body's transform, lies inside (or on) the region.

@@ -1,0 +1,21 @@
+#pragma once
+#include "evert/scene/config.hpp"
+
+#include <mpi.h>
+
+#include <memory>
+#include <string>
+
+namespace evert {
+
+/// Collective. What a scene says of the motion of an obstacle that is at `start` at t = 0. Throws UserError
+/// on all ranks where a table is wrong.
+[[nodiscard]] std::unique_ptr<RigidMotion> motion_of(MPI_Comm comm, const ObstacleConfig& obstacle,
+                                                     const RigidState& start);
+
+/// What is wrong with the next key of a table: "" where nothing is.
+[[nodiscard]] std::string wrong_with(const std::vector<PoseKey>& keys_before, const PoseKey& key);
+/// From t, x, y, z and the quaternion w, x, y, z.
+[[nodiscard]] PoseKey pose_key(const std::array<double, 8>& row);
+
+}  // namespace evert
