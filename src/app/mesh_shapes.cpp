@@ -2,6 +2,7 @@
 
 #include "evert/core/error.hpp"
 #include "evert/mesh/generators.hpp"
+#include "evert/shapes/solids.hpp"
 
 #include "command_options.hpp"
 #include <functional>
@@ -45,27 +46,26 @@ Mesh make_box(const CommandOptions& options) {
 }
 
 /// A shape filled by stuffing: all take -edge_length.
-Shape implicit(std::string name, std::vector<std::string> options,
-               std::function<ImplicitShape(const CommandOptions&)> shape) {
+template <class MakeSolid>
+Shape implicit(const std::string& name, std::vector<std::string> options, MakeSolid make_solid) {
   options.emplace_back("edge_length");
-  return {std::move(name), std::move(options), [shape = std::move(shape)](const CommandOptions& values) {
-            return generate(shape(values), values.number("edge_length"));
+  return {name, std::move(options), [name, make_solid](const CommandOptions& values) {
+            return generate(make_solid(values), name, values.number("edge_length"));
           }};
 }
 
 const std::vector<Shape>& shapes() {
+  using Options = CommandOptions;
   static const std::vector<Shape> table{
       {"box", {"size", "edge_length", "cells", "hole", "cell"}, make_box},
-      implicit("ball", {"radius"}, [](const CommandOptions& o) { return ball(o.number("radius")); }),
-      implicit(
-          "torus", {"major_radius", "minor_radius"},
-          [](const CommandOptions& o) { return torus(o.number("major_radius"), o.number("minor_radius")); }),
+      implicit("ball", {"radius"}, [](const Options& o) { return Sphere(o.number("radius")); }),
+      implicit("torus", {"major_radius", "minor_radius"},
+               [](const Options& o) { return Torus(o.number("major_radius"), o.number("minor_radius")); }),
       implicit("cylinder", {"radius", "length"},
-               [](const CommandOptions& o) { return cylinder(o.number("radius"), o.number("length")); }),
+               [](const Options& o) { return cylinder(o.number("radius"), o.number("length")); }),
       implicit("capsule", {"radius", "length"},
-               [](const CommandOptions& o) { return capsule(o.number("radius"), o.number("length")); }),
-      implicit("ellipsoid", {"radii"},
-               [](const CommandOptions& o) { return ellipsoid(o.three_numbers("radii")); }),
+               [](const Options& o) { return Capsule(o.number("radius"), o.number("length")); }),
+      implicit("ellipsoid", {"radii"}, [](const Options& o) { return Ellipsoid(o.three_numbers("radii")); }),
   };
   return table;
 }

@@ -1,9 +1,10 @@
+#include "evert/core/positive.hpp"
 #include "evert/mesh/boundary.hpp"
 #include "evert/mesh/generators.hpp"
 #include "evert/mesh/repair.hpp"
 
 #include "mesh_size.hpp"
-#include "positive.hpp"
+#include "number_text.hpp"
 #include <algorithm>
 #include <cmath>
 #include <span>

@@ -1,9 +1,10 @@
+#include "evert/core/positive.hpp"
 #include "evert/mesh/boundary.hpp"
 #include "evert/mesh/generators.hpp"
 
 #include "bcc_lattice.hpp"
 #include "mesh_size.hpp"
-#include "positive.hpp"
+#include "number_text.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,15 +63,15 @@ bool is_split_from_first(const Corner& a, const Corner& b, const Corner& c) {
 
 class Stuffing {
  public:
-  Stuffing(const ImplicitShape& shape, double edge_length)
-      : shape_(shape), lattice_(0.5 * (shape.lower + shape.upper), shape.upper - shape.lower, edge_length) {}
+  Stuffing(const ImplicitSurface& shape, std::string name, double edge_length)
+      : shape_(shape), name_(std::move(name)), lattice_(lattice_around(shape.bounds(), edge_length)) {}
 
   Mesh run() {
     classify_points();
     move_points_to_surface();
     lattice_.for_each_tetrahedron([this](const auto& points) { fill(points); });
     if (block_.nodes.empty())
-      throw UserError("nothing is inside the " + shape_.name + " at this edge_length: choose a smaller one");
+      throw UserError("nothing is inside the " + name_ + " at this edge_length: choose a smaller one");
     block_.region.assign(block_.nodes.size() / 4, 0);
     mesh_.cells.push_back(std::move(block_));
     mesh_.regions = {"body"};
@@ -79,10 +80,14 @@ class Stuffing {
   }
 
  private:
+  [[nodiscard]] static BccLattice lattice_around(const Box3& box, double edge_length) {
+    return {0.5 * (box.lower + box.upper), box.upper - box.lower, edge_length};
+  }
+
   [[nodiscard]] double value_at(const Vec3d& p) const {
-    const double value = shape_.value(p);
+    const double value = shape_.signed_distance(p);
     if (std::isnan(value))
-      throw UserError("the function of the " + shape_.name + " gives no number at (" + shortest(p[0]) + ", " +
+      throw UserError("the function of the " + name_ + " gives no number at (" + shortest(p[0]) + ", " +
                       shortest(p[1]) + ", " + shortest(p[2]) + ")");
     return value;
   }
@@ -94,7 +99,7 @@ class Stuffing {
       const double value = value_at(lattice_.position_of(point));
       sides_.push_back(value < 0 ? Side::inside : value > 0 ? Side::outside : Side::surface);
       if (sides_.back() == Side::inside && lattice_.is_outermost(point))
-        throw UserError("the " + shape_.name + " reaches out of the box given for it");
+        throw UserError("the " + name_ + " reaches out of the box given for it");
     });
   }
 
@@ -256,7 +261,8 @@ class Stuffing {
     block_.nodes.insert(block_.nodes.end(), nodes.begin(), nodes.end());
   }
 
-  const ImplicitShape& shape_;
+  const ImplicitSurface& shape_;
+  std::string name_;  // for messages
   BccLattice lattice_;
   std::vector<Side> sides_;         // per lattice point
   std::vector<GlobalIndex> nodes_;  // per lattice point, −1 until used
@@ -267,34 +273,35 @@ class Stuffing {
 };
 
 /// Volume of the shape [m³], from the fraction of samples inside: good to a few percent, for estimates.
-double roughly_the_volume(const ImplicitShape& shape) {
+double roughly_the_volume(const ImplicitSurface& shape, const Box3& box) {
   constexpr int samples = 32;
-  const auto size = shape.upper - shape.lower;
+  const auto size = box.upper - box.lower;
   int inside = 0;
   for (int k = 0; k < samples; ++k)
     for (int j = 0; j < samples; ++j)
       for (int i = 0; i < samples; ++i) {
-        const Vec3d p{shape.lower[0] + size[0] * (i + 0.5) / samples,
-                      shape.lower[1] + size[1] * (j + 0.5) / samples,
-                      shape.lower[2] + size[2] * (k + 0.5) / samples};
-        inside += shape.value(p) < 0 ? 1 : 0;
+        const Vec3d p{box.lower[0] + size[0] * (i + 0.5) / samples,
+                      box.lower[1] + size[1] * (j + 0.5) / samples,
+                      box.lower[2] + size[2] * (k + 0.5) / samples};
+        inside += shape.signed_distance(p) < 0 ? 1 : 0;
       }
   return size[0] * size[1] * size[2] * inside / (samples * samples * samples);
 }
 
 }  // namespace
 
-Mesh generate(const ImplicitShape& shape, double edge_length) {
+Mesh generate(const ImplicitSurface& shape, const std::string& name, double edge_length) {
   require_positive(edge_length, "edge_length");
-  const auto size = shape.upper - shape.lower;
-  for (const double side : size.components) require_positive(side, "a side of the box of the " + shape.name);
+  const auto box = shape.bounds();
+  const auto size = box.upper - box.lower;
+  for (const double side : size.components) require_positive(side, "a side of the box of the " + name);
   const double shortest_side = std::min({size[0], size[1], size[2]});
   if (edge_length > shortest_side / 2)
     throw UserError("edge_length is " + shortest(edge_length) + ", but must be at most " +
-                    shortest(shortest_side / 2) + ", half the shortest extent of the " + shape.name);
+                    shortest(shortest_side / 2) + ", half the shortest extent of the " + name);
   const double cube = edge_length * edge_length * edge_length;
-  require_possible_size(12 * roughly_the_volume(shape) / cube, 2 * size[0] * size[1] * size[2] / cube);
-  return Stuffing(shape, edge_length).run();
+  require_possible_size(12 * roughly_the_volume(shape, box) / cube, 2 * size[0] * size[1] * size[2] / cube);
+  return Stuffing(shape, name, edge_length).run();
 }
 
 }  // namespace evert

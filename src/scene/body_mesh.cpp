@@ -1,6 +1,7 @@
 #include "evert/scene/body_mesh.hpp"
 
 #include "evert/mesh/mesh_reader.hpp"
+#include "evert/shapes/solids.hpp"
 
 #include <type_traits>
 
@@ -15,11 +16,13 @@ Mesh make(const BoxMesh& box) {
   return mesh;
 }
 
-Mesh make(const BallMesh& m) { return generate(ball(m.radius), m.edge_length); }
-Mesh make(const TorusMesh& m) { return generate(torus(m.major_radius, m.minor_radius), m.edge_length); }
-Mesh make(const CylinderMesh& m) { return generate(cylinder(m.radius, m.length), m.edge_length); }
-Mesh make(const CapsuleMesh& m) { return generate(capsule(m.radius, m.length), m.edge_length); }
-Mesh make(const EllipsoidMesh& m) { return generate(ellipsoid(m.radii), m.edge_length); }
+Mesh make(const BallMesh& m) { return generate(Sphere(m.radius), "ball", m.edge_length); }
+Mesh make(const TorusMesh& m) {
+  return generate(Torus(m.major_radius, m.minor_radius), "torus", m.edge_length);
+}
+Mesh make(const CylinderMesh& m) { return generate(cylinder(m.radius, m.length), "cylinder", m.edge_length); }
+Mesh make(const CapsuleMesh& m) { return generate(Capsule(m.radius, m.length), "capsule", m.edge_length); }
+Mesh make(const EllipsoidMesh& m) { return generate(Ellipsoid(m.radii), "ellipsoid", m.edge_length); }
 
 }  // namespace
 

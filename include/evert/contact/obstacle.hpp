@@ -1,6 +1,6 @@
 #pragma once
-#include "evert/contact/implicit_surface.hpp"
 #include "evert/contact/rigid_motion.hpp"
+#include "evert/shapes/implicit_surface.hpp"
 
 #include <memory>
 #include <string>

@@ -1,10 +1,11 @@
 #pragma once
-#include "evert/mesh/implicit_shapes.hpp"
 #include "evert/mesh/mesh.hpp"
+#include "evert/shapes/implicit_surface.hpp"
 
 #include <array>
+#include <string>
 
-/// Meshes made from nothing. All are centred on the origin, have one region, "body", and the node set
+/// Meshes made from nothing. Boxes are centred on the origin. All have one region, "body", and the node set
 /// "surface"; the same arguments give the same mesh, bit by bit. Lengths in metres. Not collective.
 namespace evert {
 
@@ -32,8 +33,9 @@ enum class BoxCells {
 /// along it, so that every dihedral angle is above 9 degrees whatever the shape. `edge_length` is the longer
 /// edge of the lattice; the shorter is √3/2 of it, and a volume V takes about 12 V/edge_length³ tetrahedra.
 /// Features thinner than an edge are lost and sharp edges are bevelled. Throws UserError when edge_length is
-/// not positive and finite or more than half of the shortest side of the shape's box, when there would be
-/// more than 2^31 cells, when the function gives no number, or when nothing is inside.
-[[nodiscard]] Mesh generate(const ImplicitShape& shape, double edge_length);
+/// not positive and finite or more than half of the shortest side of the shape's bounds, when these are not
+/// finite, when there would be more than 2^31 cells, when φ is no number somewhere, or when nothing is
+/// inside. Only the sign of φ counts. `name` is that of the shape in messages.
+[[nodiscard]] Mesh generate(const ImplicitSurface& shape, const std::string& name, double edge_length);
 
 }  // namespace evert

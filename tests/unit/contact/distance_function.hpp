@@ -1,5 +1,5 @@
 #pragma once
-#include "evert/contact/implicit_surface.hpp"
+#include "evert/shapes/implicit_surface.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 #include "evert/core/error.hpp"
 #include "evert/io/surface.hpp"
 #include "evert/mesh/generators.hpp"
-#include "evert/mesh/implicit_shapes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -88,7 +87,7 @@ TEST(Surface, IsLeftAloneWhenSmallEnough) {
 }
 
 TEST(Surface, KeepsItsShapeWhenSimplified) {
-  const auto mesh = generate(ball(1), 0.12);
+  const auto mesh = generate(Sphere(1), "ball", 0.12);
   const auto surface = surface_of(mesh);
   ASSERT_GT(surface.triangles.size(), 2000U);
   const auto smaller = simplified(surface, mesh.nodes, 600);

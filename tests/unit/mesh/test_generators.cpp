@@ -2,9 +2,13 @@
 #include "evert/mesh/generators.hpp"
 #include "evert/mesh/quality.hpp"
 #include "evert/mesh/repair.hpp"
+#include "evert/shapes/gear.hpp"
+#include "evert/shapes/solids.hpp"
 
 #include "mesh_files.hpp"
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <numbers>
 
 namespace evert::test {
@@ -87,48 +91,73 @@ TEST(Box, of_the_bcc_lattice_has_the_best_angles) {
   EXPECT_NEAR(angles.largest, 120, 1e-9);
 }
 
-ImplicitShape box_with_hole() {
-  return {"box with a hole",
-          [](const Vec3d& p) {
+/// A solid of which only the sign of the function counts.
+class FunctionSolid final : public ImplicitSurface {
+ public:
+  FunctionSolid(std::function<double(const Vec3d&)> value, const Vec3d& half)
+      : value_(std::move(value)), half_(half) {}
+  [[nodiscard]] double signed_distance(const Vec3d& x) const override { return value_(x); }
+  [[nodiscard]] Vec3d normal(const Vec3d& /*x*/) const override { return {0, 1, 0}; }
+  [[nodiscard]] Box3 bounds() const override { return {-half_, half_}; }
+
+ private:
+  std::function<double(const Vec3d&)> value_;
+  Vec3d half_;
+};
+
+FunctionSolid box_with_hole() {
+  return {[](const Vec3d& p) {
             const double box = std::max({std::abs(p[0]) - 1, std::abs(p[1]) - 0.8, std::abs(p[2]) - 0.6});
             return std::max(box, 0.35 - std::hypot(p[0], p[1]));
           },
-          {-1, -0.8, -0.6},
           {1, 0.8, 0.6}};
 }
 
 struct Stuffed {
-  ImplicitShape shape;
+  std::string name;
+  std::shared_ptr<const ImplicitSurface> shape;
   double volume;  // [m³]
   int handles;    // of the surface
 };
 
+template <class Shape>
+Stuffed stuffed(const char* name, Shape shape, double volume, int handles) {
+  return {name, std::make_shared<Shape>(std::move(shape)), volume, handles};
+}
+
 std::vector<Stuffed> shapes() {
   constexpr double pi = std::numbers::pi;
   return {
-      {ball(1), 4 * pi / 3, 0},
-      {torus(0.5, 0.2), 2 * pi * pi * 0.5 * 0.04, 1},
-      {torus(1, 0.1), 2 * pi * pi * 0.01, 1},
-      {torus(0.5, 0.45), 2 * pi * pi * 0.5 * 0.45 * 0.45, 1},
-      {cylinder(0.4, 2), pi * 0.16 * 2, 0},
-      {ellipsoid({1, 0.5, 1.3}), 4 * pi / 3 * 0.65, 0},
-      {capsule(0.3, 1), pi * 0.09 + 4 * pi / 3 * 0.027, 0},
-      {box_with_hole(), 2 * 1.6 * 1.2 - pi * 0.35 * 0.35 * 1.2, 1},
+      stuffed("ball", Sphere(1), 4 * pi / 3, 0),
+      stuffed("torus", Torus(0.5, 0.2), 2 * pi * pi * 0.5 * 0.04, 1),
+      stuffed("thin torus", Torus(1, 0.1), 2 * pi * pi * 0.01, 1),
+      stuffed("thick torus", Torus(0.5, 0.45), 2 * pi * pi * 0.5 * 0.45 * 0.45, 1),
+      stuffed("cylinder", cylinder(0.4, 2), pi * 0.16 * 2, 0),
+      stuffed("ellipsoid", Ellipsoid({1, 0.5, 1.3}), 4 * pi / 3 * 0.65, 0),
+      stuffed("capsule", Capsule(0.3, 1), pi * 0.09 + 4 * pi / 3 * 0.027, 0),
+      stuffed("rounded box", Box({1, 1, 1}, 0.4),
+              0.008 + 6 * 0.04 * 0.4 + 12 * 0.2 * pi * 0.04 + 4 * pi / 3 * 0.064, 0),
+      stuffed("truncated cone", Cone(1, 0.5, 1), pi / 3 * 1.75, 0),
+      stuffed("box with a hole", box_with_hole(), 2 * 1.6 * 1.2 - pi * 0.35 * 0.35 * 1.2, 1),
   };
+}
+
+double thinnest_side(const ImplicitSurface& shape) {
+  const auto size = shape.bounds().upper - shape.bounds().lower;
+  return std::min({size[0], size[1], size[2]});
 }
 
 /// The bound that issue 2 asks for is 8 degrees; the method promises 9 whatever the shape.
 TEST(Stuffing, keeps_every_dihedral_angle_above_9_degrees) {
-  for (const auto& [shape, volume, handles] : shapes()) {
-    const auto size = shape.upper - shape.lower;
-    const double thinnest = std::min({size[0], size[1], size[2]});
+  for (const auto& [name, shape, volume, handles] : shapes()) {
+    const double thinnest = thinnest_side(*shape);
     for (const double parts : {2.0, 2.7, 4.0, 6.3, 9.1}) {
-      const auto mesh = generate(shape, thinnest / parts);
+      const auto mesh = generate(*shape, name, thinnest / parts);
       const auto quality = measure_quality(mesh);
-      EXPECT_GT(quality.dihedral_angle.smallest, 9) << shape.name << ' ' << parts;
-      EXPECT_LT(quality.dihedral_angle.largest, 165) << shape.name << ' ' << parts;
-      EXPECT_NO_THROW(require_positive_volumes(mesh, shape.name));
-      EXPECT_EQ(quality.unused_nodes + quality.duplicate_nodes, 0) << shape.name << ' ' << parts;
+      EXPECT_GT(quality.dihedral_angle.smallest, 9) << name << ' ' << parts;
+      EXPECT_LT(quality.dihedral_angle.largest, 165) << name << ' ' << parts;
+      EXPECT_NO_THROW(require_positive_volumes(mesh, name));
+      EXPECT_EQ(quality.unused_nodes + quality.duplicate_nodes, 0) << name << ' ' << parts;
     }
   }
 }
@@ -138,56 +167,51 @@ TEST(Stuffing, keeps_the_bound_for_tilted_and_rough_shapes) {
   double smallest = 180;
   for (int seed = 0; seed < 12; ++seed) {
     const double a = 0.37 * seed;
-    const ImplicitShape tilted{"tilted slab",
-                               [=](const Vec3d& p) {
-                                 const double across = std::cos(a) * p[0] +
-                                                       std::sin(a) * std::cos(2 * a) * p[1] +
-                                                       std::sin(a) * std::sin(2 * a) * p[2];
-                                 return std::max(std::abs(across) - 0.31, std::hypot(p[0], p[1], p[2]) - 1);
-                               },
-                               {-1, -1, -1},
-                               {1, 1, 1}};
-    const ImplicitShape rough{"rough ball",
-                              [=](const Vec3d& p) {
-                                return std::hypot(p[0], p[1], p[2]) - 0.8 +
-                                       0.15 * std::sin(17 * p[0] + a) * std::sin(19 * p[1] + 2 * a) *
-                                           std::sin(23 * p[2] + 3 * a);
-                              },
-                              {-1, -1, -1},
-                              {1, 1, 1}};
-    for (const auto& shape : {tilted, rough})
-      smallest = std::min(smallest, measure_quality(generate(shape, 0.14)).dihedral_angle.smallest);
+    const FunctionSolid tilted(
+        [=](const Vec3d& p) {
+          const double across = std::cos(a) * p[0] + std::sin(a) * std::cos(2 * a) * p[1] +
+                                std::sin(a) * std::sin(2 * a) * p[2];
+          return std::max(std::abs(across) - 0.31, std::hypot(p[0], p[1], p[2]) - 1);
+        },
+        {1, 1, 1});
+    const FunctionSolid rough(
+        [=](const Vec3d& p) {
+          return std::hypot(p[0], p[1], p[2]) - 0.8 +
+                 0.15 * std::sin(17 * p[0] + a) * std::sin(19 * p[1] + 2 * a) * std::sin(23 * p[2] + 3 * a);
+        },
+        {1, 1, 1});
+    for (const auto* shape : {&tilted, &rough})
+      smallest = std::min(smallest, measure_quality(generate(*shape, "slab", 0.14)).dihedral_angle.smallest);
   }
   EXPECT_GT(smallest, 9);
 }
 
 TEST(Stuffing, converges_to_the_shape_and_its_topology) {
-  for (const auto& [shape, volume, handles] : shapes()) {
-    const auto size = shape.upper - shape.lower;
-    const double thinnest = std::min({size[0], size[1], size[2]});
-    const auto mesh = generate(shape, thinnest / 8);
+  for (const auto& [name, shape, volume, handles] : shapes()) {
+    const double thinnest = thinnest_side(*shape);
+    const auto mesh = generate(*shape, name, thinnest / 8);
     const auto quality = measure_quality(mesh);
-    EXPECT_NEAR(quality.total_volume / volume, 1, 0.04) << shape.name;
-    EXPECT_EQ(quality.components, 1) << shape.name;
+    EXPECT_NEAR(quality.total_volume / volume, 1, 0.04) << name;
+    EXPECT_EQ(quality.components, 1) << name;
     // Euler's formula of the closed surface.
     const auto faces = quality.boundary_faces;
     const auto surface = static_cast<GlobalIndex>(node_set(mesh, "surface").nodes.size());
-    EXPECT_EQ(surface - 3 * faces / 2 + faces, 2 - 2 * handles) << shape.name;
+    EXPECT_EQ(surface - 3 * faces / 2 + faces, 2 - 2 * handles) << name;
     for (const auto node : node_set(mesh, "surface").nodes)
-      EXPECT_NEAR(shape.value(position(mesh, node)), 0, 1e-12) << shape.name;
+      EXPECT_NEAR(shape->signed_distance(position(mesh, node)), 0, 1e-12) << name;
   }
 }
 
 TEST(Stuffing, gives_the_tori_of_the_demo) {
-  EXPECT_EQ(generate(torus(0.5, 0.2), 0.077).cell_count(), 11048);
-  const auto large = generate(torus(0.5, 0.2), 0.035).cell_count();
+  EXPECT_EQ(generate(Torus(0.5, 0.2), "torus", 0.077).cell_count(), 11048);
+  const auto large = generate(Torus(0.5, 0.2), "torus", 0.035).cell_count();
   EXPECT_GT(large, 114000);
   EXPECT_LT(large, 116000);
 }
 
 TEST(Stuffing, is_repeatable) {
-  const auto a = generate(torus(0.5, 0.2), 0.1);
-  const auto b = generate(torus(0.5, 0.2), 0.1);
+  const auto a = generate(Torus(0.5, 0.2), "torus", 0.1);
+  const auto b = generate(Torus(0.5, 0.2), "torus", 0.1);
   EXPECT_EQ(a.nodes, b.nodes);
   EXPECT_EQ(a.cells[0].nodes, b.cells[0].nodes);
 }
@@ -198,18 +222,18 @@ TEST(Generators, refuse_impossible_sizes) {
   const auto expect = [](auto work, std::string_view fault) {
     expect_user_error([&] { static_cast<void>(work()); }, {fault});
   };
-  expect([&] { return ball(0); }, "radius is 0, but must be a positive finite length");
-  expect([&] { return ball(nan); }, "radius is nan");
+  expect([&] { return Sphere(0); }, "radius is 0, but must be a positive finite length");
+  expect([&] { return Sphere(nan); }, "radius is nan");
   expect([&] { return cylinder(1, -2); }, "length is -2");
-  expect([&] { return ellipsoid({1, infinite, 1}); }, "radii is inf");
-  expect([&] { return torus(0.2, 0.5); }, "minor_radius is 0.5, but must be less than major_radius, 0.2");
-  expect([&] { return generate(ball(1), 0); }, "edge_length is 0");
-  expect([&] { return generate(ball(1), nan); }, "edge_length is nan");
-  expect([&] { return generate(ball(1), 1.5); },
+  expect([&] { return Ellipsoid({1, infinite, 1}); }, "radii is inf");
+  expect([&] { return Torus(0.2, 0.5); }, "minor_radius is 0.5, but must be less than major_radius, 0.2");
+  expect([&] { return generate(Sphere(1), "ball", 0); }, "edge_length is 0");
+  expect([&] { return generate(Sphere(1), "ball", nan); }, "edge_length is nan");
+  expect([&] { return generate(Sphere(1), "ball", 1.5); },
          "edge_length is 1.5, but must be at most 1, half the shortest extent");
-  expect([&] { return generate(ball(1), 1e-4); },
+  expect([&] { return generate(Sphere(1), "ball", 1e-4); },
          "GB of this machine are allowed: choose a larger edge_length");
-  expect([&] { return generate(ball(1), 1e-300); }, "choose a larger edge_length");
+  expect([&] { return generate(Sphere(1), "ball", 1e-300); }, "choose a larger edge_length");
   expect(
       [&] {
         return generate_box({1, 1, 1}, 2, BoxCells::hex8);
@@ -221,23 +245,17 @@ TEST(Generators, refuse_impossible_sizes) {
   expect([&] { return generate_box({1, 1, 1}, {4, 4, 1}, BoxCells::hex8, {4, 2}); }, "less than all");
   expect([&] { return generate_box({1, 1, 1}, {4, 4, 1}, BoxCells::hex8, {2, 1}); }, "both must be odd");
   expect([&] { return generate_box({1, 1, 1}, {100000, 100000, 100000}, BoxCells::hex8); }, "2^31 cells");
-  const Vec3d low{-1, -1, -1};
-  const Vec3d high{1, 1, 1};
+  const auto constant = [](double value) {
+    return FunctionSolid([=](const Vec3d&) { return value; }, {1, 1, 1});
+  };
+  expect([&] { return generate(constant(nan), "hole", 0.5); }, "gives no number at");
+  expect([&] { return generate(constant(1), "void", 0.5); }, "nothing is inside");
+  expect([&] { return generate(constant(-1), "all", 0.5); }, "reaches out of the box");
   expect(
       [&] {
-        return generate({"hole", [=](const Vec3d&) { return nan; }, low, high}, 0.5);
+        return generate(HalfSpace({}, {0, 1, 0}), "half space", 0.5);
       },
-      "gives no number at");
-  expect(
-      [&] {
-        return generate({"void", [](const Vec3d&) { return 1.0; }, low, high}, 0.5);
-      },
-      "nothing is inside");
-  expect(
-      [&] {
-        return generate({"all", [](const Vec3d&) { return -1.0; }, low, high}, 0.5);
-      },
-      "reaches out of the box");
+      "a side of the box of the half space is inf, but must be a positive finite length");
 }
 
 }  // namespace

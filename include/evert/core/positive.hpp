@@ -1,17 +1,16 @@
 #pragma once
 #include "evert/core/error.hpp"
+#include "evert/core/formatted.hpp"
 
-#include "number_text.hpp"
 #include <cmath>
 #include <string>
-#include <string_view>
 
 namespace evert {
 
 /// Throws UserError unless `length`, called `name`, is positive and finite.
-inline void require_positive(double length, std::string_view name) {
+inline void require_positive(double length, const std::string& name) {
   if (!(length > 0) || !std::isfinite(length))
-    throw UserError(std::string(name) + " is " + shortest(length) + ", but must be a positive finite length");
+    throw UserError(name + formatted(" is %g, but must be a positive finite length", length));
 }
 
 }  // namespace evert

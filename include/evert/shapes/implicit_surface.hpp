@@ -1,13 +1,17 @@
 #pragma once
 #include "evert/math/box3.hpp"
 #include "evert/math/vec3.hpp"
+#include "evert/shapes/triangle_surface.hpp"
+
+#include <optional>
 
 namespace evert {
 
 /// A solid as a level set φ in its own frame, φ < 0 inside.  paper A, section 9
 ///
 /// What contact needs: φ is 1-Lipschitz, and from a point inside, near the surface, a way −φ along the normal
-/// ends on it. Safe to ask from several threads.
+/// ends on it. What the mesh generator needs: the sign of φ, and the bounds. Safe to ask from several
+/// threads.
 class ImplicitSurface {
  public:
   virtual ~ImplicitSurface() = default;
@@ -18,6 +22,10 @@ class ImplicitSurface {
   [[nodiscard]] virtual Vec3d normal(const Vec3d& x) const = 0;
   /// Contains the solid; infinite where it goes on for ever.
   [[nodiscard]] virtual Box3 bounds() const = 0;
+  /// Better triangles than triangulate() finds by looking at φ, where the solid knows some.
+  [[nodiscard]] virtual std::optional<TriangleSurface> own_triangles(const Fineness& /*fineness*/) const {
+    return {};
+  }
 };
 
 /// Everything behind the plane through `point` with outward normal `normal` (need not be unit; not zero).
@@ -27,6 +35,8 @@ class HalfSpace final : public ImplicitSurface {
   [[nodiscard]] double signed_distance(const Vec3d& x) const override { return dot(x - point_, normal_); }
   [[nodiscard]] Vec3d normal(const Vec3d& /*x*/) const override { return normal_; }
   [[nodiscard]] Box3 bounds() const override { return Box3::everything(); }
+  /// A square around the point.
+  [[nodiscard]] std::optional<TriangleSurface> own_triangles(const Fineness& fineness) const override;
 
  private:
   Vec3d point_, normal_;
@@ -35,7 +45,7 @@ class HalfSpace final : public ImplicitSurface {
 /// A ball of `radius` > 0 [m] around the origin.
 class Sphere final : public ImplicitSurface {
  public:
-  explicit Sphere(double radius) : radius_(radius) {}
+  explicit Sphere(double radius);
   [[nodiscard]] double signed_distance(const Vec3d& x) const override { return norm(x) - radius_; }
   [[nodiscard]] Vec3d normal(const Vec3d& x) const override {
     const double distance = norm(x);
