@@ -26,6 +26,9 @@ void Obstacle::move_to(const StepInterval& step) {
   before_ = motion_->at(step.end - step.dt);
   now_ = motion_->at(step.end);
   bounds_ = placed(surface_->bounds(), now_.rotation, now_.origin);
+  const auto was = placed(surface_->bounds(), before_.rotation, before_.origin);
+  bounds_.include(was.lower);
+  bounds_.include(was.upper);
 }
 
 }  // namespace evert

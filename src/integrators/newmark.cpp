@@ -45,6 +45,7 @@ StepReport Newmark::advance(System& system, double dt) {
   account_for_mass_damping(system, implicit_);
   remember_change(system, system.v.owned(), predicted_.owned());
   report.contacts = system.collisions.contacts();
+  report.notes = system.collisions.take_notes();
   system.time += dt;
   return report;
 }
@@ -137,18 +138,12 @@ int Newmark::rub(System& system) {
   collisions.stop_reversed(system.v.owned());
   impose(prescribed_, system.v.owned());
   system.v.touched();
-  const auto exerted = [&](std::span<const NodeConstraint> constraints) {
-    Vec3d sum{};
-    for (const auto& c : constraints) {
-      const auto r = node_value(reaction, c.node);
-      sum += r - c.free * r;
-    }
-    return sum;
-  };
-  const auto by_prescription = exerted(prescribed_);
-  system.impulses.constraint += by_prescription;
-  system.impulses.contact +=
-      exerted(constraints_) - by_prescription + collisions.friction() + collisions.impulse();
+  collisions.share_impulses(reaction, prescribed_, constraints_);
+  for (const auto& c : prescribed_) {
+    const auto r = node_value(reaction, c.node);
+    system.impulses.constraint += r - c.free * r;
+  }
+  system.impulses.contact += collisions.impulse();
   return iterations;
 }
 

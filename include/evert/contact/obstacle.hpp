@@ -26,7 +26,7 @@ class Obstacle {
   /// Takes the body to the end of `step`. What follows speaks of there.
   void move_to(const StepInterval& step);
 
-  /// Contains the body.
+  /// Contains the body at both ends of the step.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
   /// As ImplicitSurface, in the world.
   [[nodiscard]] double signed_distance(const Vec3d& x) const {
@@ -43,6 +43,8 @@ class Obstacle {
     return (1 / step_.dt) * (x - before_.to_world(now_.to_body(x)));
   }
   [[nodiscard]] const RigidState& state() const { return now_; }
+  /// At the beginning of the step.
+  [[nodiscard]] const RigidState& before() const { return before_; }
   [[nodiscard]] const ImplicitSurface& surface() const { return *surface_; }
 
   /// Null where the motion is prescribed.
