@@ -66,12 +66,20 @@ void RigidBody::push(const Vec3d& impulse, const Vec3d& place) {
   end_.rotation = normalized(quaternion_by(turn) * end_.rotation);
 }
 
-void RigidBody::add_nodal_impulse(const Vec3d& linear, const Vec3d& angular) {
-  const auto about_center = angular - cross(rotation_matrix(end_.rotation) * mass_.center, linear);
-  end_.velocity += (1 / mass_.mass) * linear;
-  end_.angular_momentum += about_center;
-  nodal_force_ = (1 / dt_) * linear;
-  nodal_torque_ = (1 / dt_) * about_center;
+void RigidBody::expect_nodes() {
+  without_nodes_ = end_;
+  set_nodal_impulse({dt_ * nodal_force_, dt_ * nodal_torque_});
+}
+
+void RigidBody::set_nodal_impulse(const CentralImpulse& impulse) {
+  end_.velocity = without_nodes_.velocity + (1 / mass_.mass) * impulse.linear;
+  end_.angular_momentum = without_nodes_.angular_momentum + impulse.angular;
+  nodal_force_ = (1 / dt_) * impulse.linear;
+  nodal_torque_ = (1 / dt_) * impulse.angular;
+}
+
+double RigidBody::product(const CentralImpulse& a, const CentralImpulse& b) const {
+  return dot(a.linear, b.linear) / mass_.mass + dot(a.angular, turn_of(end_.rotation, b.angular));
 }
 
 double RigidBody::kinetic_energy() const {

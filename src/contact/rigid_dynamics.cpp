@@ -21,12 +21,19 @@ void RigidDynamics::advance(const StepInterval& step, const Vec3d& gravity) {
   for (const auto number : bodies_)
     if (contacts_.touches(number)) obstacles_[number]->body()->place_by_mean_velocity();
   contacts_.separate();
-  for (const auto number : bodies_) obstacles_[number]->move_to(step);
+  for (const auto number : bodies_) {
+    obstacles_[number]->body()->expect_nodes();
+    obstacles_[number]->move_to(step);
+  }
 }
 
-void RigidDynamics::receive(std::size_t obstacle, const Vec3d& linear, const Vec3d& angular) {
-  obstacles_[obstacle]->body()->add_nodal_impulse(linear, angular);
+void RigidDynamics::set_nodal_impulse(std::size_t obstacle, const CentralImpulse& impulse) {
+  obstacles_[obstacle]->body()->set_nodal_impulse(impulse);
   obstacles_[obstacle]->move_to(step_);
+}
+
+CentralImpulse RigidDynamics::central(std::size_t obstacle, const Vec3d& linear, const Vec3d& angular) const {
+  return {linear, angular - cross(body(obstacle).center() - obstacles_[obstacle]->state().origin, linear)};
 }
 
 std::vector<std::pair<std::string, double>> RigidDynamics::state() const {

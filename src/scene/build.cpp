@@ -44,6 +44,10 @@ std::unique_ptr<Obstacle> obstacle_of(MPI_Comm comm, const ObstacleConfig& confi
     surface = std::make_unique<Sphere>(sphere.radius);
     start.origin = sphere.center;
   }
+  if (config.mass || config.density) {
+    auto body = rigid_body_of(config, *surface, start);
+    return std::make_unique<Obstacle>(config.name, config.friction, std::move(surface), std::move(body));
+  }
   return std::make_unique<Obstacle>(config.name, config.friction, std::move(surface),
                                     motion_of(comm, config, start));
 }

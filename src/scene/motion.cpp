@@ -122,4 +122,21 @@ std::unique_ptr<RigidMotion> motion_of(MPI_Comm comm, const ObstacleConfig& obst
   return std::make_unique<UniformMotion>(moving, about);
 }
 
+std::unique_ptr<RigidBody> rigid_body_of(const ObstacleConfig& obstacle, const ImplicitSurface& surface,
+                                         RigidState start) {
+  const auto bounds = surface.bounds();
+  if (!std::isfinite(norm(bounds.upper - bounds.lower)))
+    throw UserError("obstacles." + obstacle.name + ": goes on for ever, and so cannot have a mass");
+  const auto unit = mass_of(surface);
+  const auto mass = unit.times(obstacle.mass ? *obstacle.mass / unit.mass : *obstacle.density);
+  const auto inverse_inertia = inverse(mass.inertia);
+  if (!std::isfinite(norm(inverse_inertia)) || !(mass.mass > 0) || !std::isfinite(1 / mass.mass))
+    throw UserError("obstacles." + obstacle.name +
+                    formatted(": a mass of %g kg of this size is more or less than can be computed with",
+                              mass.mass));
+  start.angular_velocity = obstacle.initial_angular_velocity;
+  start.velocity = obstacle.initial_velocity - cross(start.angular_velocity, start.rotation * mass.center);
+  return std::make_unique<RigidBody>(mass, start);
+}
+
 }  // namespace evert

@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/contact/rigid_body.hpp"
 #include "evert/scene/config.hpp"
 
 #include <mpi.h>
@@ -12,6 +13,11 @@ namespace evert {
 /// on all ranks where a table is wrong.
 [[nodiscard]] std::unique_ptr<RigidMotion> motion_of(MPI_Comm comm, const ObstacleConfig& obstacle,
                                                      const RigidState& start);
+
+/// A body with the mass that the scene says, that is at `start` at t = 0. Throws UserError where `surface`
+/// goes on for ever.
+[[nodiscard]] std::unique_ptr<RigidBody> rigid_body_of(const ObstacleConfig& obstacle,
+                                                       const ImplicitSurface& surface, RigidState start);
 
 /// What is wrong with the next key of a table: "" where nothing is.
 [[nodiscard]] std::string wrong_with(const std::vector<PoseKey>& keys_before, const PoseKey& key);

@@ -39,6 +39,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> material_cases();
 [[nodiscard]] std::vector<Case> quasistatic_cases();
 [[nodiscard]] std::vector<Case> motion_cases();
+[[nodiscard]] std::vector<Case> rigid_cases();
 
 // --- good input to spoil
 

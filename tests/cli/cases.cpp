@@ -514,7 +514,7 @@ const std::vector<Case>& all_cases() {
     std::vector<Case> all;
     for (const auto& group :
          {good_runs, views, material_cases(), quasistatic_cases(), bad_commands, bad_scenes, bad_meshes,
-          cut_meshes(), fibre_cases(), motion_cases(), failures, bad_output, bad_restarts})
+          cut_meshes(), fibre_cases(), motion_cases(), rigid_cases(), failures, bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

@@ -8,9 +8,15 @@
 
 namespace evert {
 
+/// An impulse on a rigid body [N s], with the angular one about its centre of mass [N m s].
+struct CentralImpulse {
+  Vec3d linear{}, angular{};
+};
+
 /// A rigid body that moves by the forces on it: in each step first on its own (begin_step), then by the
-/// impulses that others add. Its angular momentum is the state, and its rotation a unit quaternion, so that
-/// what is not acted on keeps its angular momentum to the last bit.  docs/design/rigid-bodies.md
+/// impulses of other bodies, then by those of nodes. Its angular momentum is the state, and its rotation a
+/// unit quaternion, so that what is not acted on keeps its angular momentum to the last bit.
+/// docs/design/rigid-bodies.md
 class RigidBody final : public RigidMotion {
  public:
   /// `start` is the state of the frame that the mass properties are given in.
@@ -19,8 +25,8 @@ class RigidBody final : public RigidMotion {
   /// The state at the begin or at the end of the present step, whichever is nearer to `t`.
   [[nodiscard]] RigidState at(double t) const override;
 
-  /// Goes on by `dt` from `time`, free but for `gravity`; what nodes exerted in the step before is taken to
-  /// go on for the place, not for the velocity.
+  /// Goes on by `dt` from `time`, free but for `gravity` and, for the place, for the force of nodes in the
+  /// step before.
   void begin_step(double time, double dt, const Vec3d& gravity);
   /// An impulse at a place of the world changes the velocities at the end of the step, not the place.
   void add_impulse(const Vec3d& impulse, const Vec3d& place);
@@ -28,8 +34,13 @@ class RigidBody final : public RigidMotion {
   void place_by_mean_velocity();
   /// Moves the body as an impulse in unit time would, in place and not in velocity.
   void push(const Vec3d& impulse, const Vec3d& place);
-  /// The impulse and, about the origin of the frame, the angular impulse that nodes gave in this step.
-  void add_nodal_impulse(const Vec3d& linear, const Vec3d& angular);
+  /// No more impulses of other bodies in this step. Expects of nodes what they exerted in the step before.
+  void expect_nodes();
+  /// The velocities become those that this impulse of nodes makes of what expect_nodes() found.
+  void set_nodal_impulse(const CentralImpulse& impulse);
+  [[nodiscard]] CentralImpulse nodal_impulse() const { return {dt_ * nodal_force_, dt_ * nodal_torque_}; }
+  /// aᵀ M⁻¹ b, twice the energy that an impulse a = b gives the body at rest.
+  [[nodiscard]] double product(const CentralImpulse& a, const CentralImpulse& b) const;
 
   [[nodiscard]] const MassProperties& mass() const { return mass_; }
   // At the end of the step:
@@ -63,6 +74,7 @@ class RigidBody final : public RigidMotion {
   MassProperties mass_;
   Mat3d inverse_inertia_;
   State begin_, end_;
+  State without_nodes_;                   // end_ before the impulse of nodes
   double begin_time_ = 0, dt_ = 0;        // [s]
   Vec3d nodal_force_{}, nodal_torque_{};  // of the step before, then of this one [N], [N m]
 };

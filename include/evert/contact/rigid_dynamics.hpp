@@ -25,9 +25,11 @@ class RigidDynamics {
   /// Takes all obstacles to the end of `step`: the bodies by `gravity` and by what they touch of each other
   /// and of the rest.
   void advance(const StepInterval& step, const Vec3d& gravity);
-  /// What nodes gave `obstacle`, a body, in this step: the impulse [N s] and the angular one about the origin
-  /// of its frame [N m s]. Its velocities change, its place does not.
-  void receive(std::size_t obstacle, const Vec3d& linear, const Vec3d& angular);
+  /// What nodes give `obstacle`, a body, in this step, in the place of what was said of that before; first,
+  /// it is what they gave in the step before. Its velocities change, its place does not.
+  void set_nodal_impulse(std::size_t obstacle, const CentralImpulse& impulse);
+  /// An impulse with an angular part about the origin of the frame of `obstacle`, about its centre instead.
+  [[nodiscard]] CentralImpulse central(std::size_t obstacle, const Vec3d& linear, const Vec3d& angular) const;
 
   /// What `obstacle` gave to the bodies in the last advance(), the angular part about the origin of its frame
   /// [N s, N m s].

@@ -228,6 +228,11 @@ struct ObstacleConfig {
   double friction = 0;  ///< [-] Coulomb coefficient ≥ 0
   Vec3d velocity{};     ///< [m/s] constant; not with motion
   std::optional<MotionConfig> motion;
+  // Of a rigid body that moves by the forces on it, which has exactly one of mass and density:
+  std::optional<double> mass;        ///< [kg] > 0
+  std::optional<double> density;     ///< [kg/m^3] > 0
+  Vec3d initial_velocity{};          ///< [m/s] of its centre of mass
+  Vec3d initial_angular_velocity{};  ///< [rad/s]
 };
 
 /// Nodes whose position at rest, after the body's transform, lies inside (or on) the region.
