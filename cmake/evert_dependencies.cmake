@@ -14,3 +14,21 @@ find_package(yaml-cpp 0.7 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(METIS 5.1 REQUIRED)
 add_library(evert::metis ALIAS METIS::METIS)
+
+# Optional: the look-up of points far from an obstacle of triangles. Debian ships no CMake package that stands alone,
+# and does not install the headers of Boost that those of OpenVDB include.
+find_path(EVERT_OPENVDB_HEADERS openvdb/openvdb.h)
+find_path(EVERT_BOOST_HEADERS boost/numeric/conversion/conversion_traits.hpp)
+find_library(EVERT_OPENVDB_LIBRARY openvdb)
+find_library(EVERT_TBB_LIBRARY tbb)
+find_library(EVERT_IMATH_LIBRARY NAMES Imath Imath-3_1 Imath-3_2)
+mark_as_advanced(EVERT_OPENVDB_HEADERS EVERT_BOOST_HEADERS EVERT_OPENVDB_LIBRARY EVERT_TBB_LIBRARY
+                 EVERT_IMATH_LIBRARY)
+set(found_openvdb OFF)
+if(EVERT_OPENVDB_HEADERS AND EVERT_BOOST_HEADERS AND EVERT_OPENVDB_LIBRARY AND EVERT_TBB_LIBRARY AND EVERT_IMATH_LIBRARY)
+  set(found_openvdb ON)
+endif()
+option(EVERT_OPENVDB "Use OpenVDB (libopenvdb-dev): faster contact with obstacles of triangles" ${found_openvdb})
+if(EVERT_OPENVDB AND NOT found_openvdb)
+  message(FATAL_ERROR "EVERT_OPENVDB is ON, but OpenVDB, TBB, Imath or Boost was not found: install libopenvdb-dev libboost-dev")
+endif()

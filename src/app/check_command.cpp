@@ -128,15 +128,15 @@ std::string motion_text(const ObstacleConfig& obstacle, const Simulation& simula
   if (!obstacle.motion) return norm(obstacle.velocity) > 0 ? ", moving steadily" : "";
   if (!obstacle.motion->file.empty()) return ", moving as " + obstacle.motion->file + " says";
   if (!obstacle.motion->keyframes.empty()) return ", moving by keyframes";
-  return obstacle.motion->frequency > 0 ? formatted(", moving to and fro at %g Hz", obstacle.motion->frequency)
-                                        : ", moving steadily";
+  return obstacle.motion->frequency > 0
+             ? formatted(", moving to and fro at %g Hz", obstacle.motion->frequency)
+             : ", moving steadily";
 }
 
 void report_surroundings(Report& report, const SceneConfig& scene, const Simulation& simulation) {
   const auto& mesh = simulation.mesh();
   for (const auto& obstacle : scene.obstacles) {
-    const bool plane = std::holds_alternative<HalfSpaceConfig>(obstacle.shape);
-    report.line("obstacles", obstacle.name + (plane ? ": half_space" : ": sphere") +
+    report.line("obstacles", obstacle.name + ": " + name_of(obstacle.shape.solid) +
                                  formatted(", friction %g", obstacle.friction) +
                                  motion_text(obstacle, simulation));
   }

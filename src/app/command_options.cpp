@@ -93,14 +93,4 @@ Vec3d CommandOptions::three_numbers(const std::string& option) const {
   return {values[0], values[1], values[2]};
 }
 
-std::array<int, 2> CommandOptions::two_whole_numbers(const std::string& option) const {
-  const auto values = numbers<int>(option, 2, "two whole numbers like 4,4");
-  return {values[0], values[1]};
-}
-
-std::array<int, 3> CommandOptions::three_whole_numbers(const std::string& option) const {
-  const auto values = numbers<int>(option, 3, "three whole numbers like 10,5,5");
-  return {values[0], values[1], values[2]};
-}
-
 }  // namespace evert

@@ -1,7 +1,6 @@
 #pragma once
 #include "evert/math/vec3.hpp"
 
-#include <array>
 #include <map>
 #include <span>
 #include <string>
@@ -27,8 +26,6 @@ class CommandOptions {
   [[nodiscard]] double number(const std::string& option) const;
   [[nodiscard]] int whole_number(const std::string& option) const;
   [[nodiscard]] Vec3d three_numbers(const std::string& option) const;
-  [[nodiscard]] std::array<int, 2> two_whole_numbers(const std::string& option) const;
-  [[nodiscard]] std::array<int, 3> three_whole_numbers(const std::string& option) const;
 
  private:
   template <class Number>

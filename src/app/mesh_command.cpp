@@ -21,12 +21,19 @@ namespace {
 constexpr const char* help = R"(evert mesh: makes, converts, judges and partitions meshes
 
 evert mesh generate SHAPE ... -o OUT     make a mesh and print its quality; lengths in metres
-  box        -size X,Y,Z (-edge_length E | -cells NX,NY,NZ [-hole NX,NY]) [-cell bcc|tet5|tet6|hex8|wedge6]
-  ball       -radius R -edge_length E
-  torus      -major_radius R -minor_radius R -edge_length E
-  cylinder   -radius R -length L -edge_length E
-  capsule    -radius R -length L -edge_length E
-  ellipsoid  -radii A,B,C -edge_length E
+  box          -size X,Y,Z (-edge_length E | -cells NX,NY,NZ [-hole NX,NY]) [-cell bcc|tet5|tet6|hex8|wedge6]
+  The others take -edge_length E, and the keys that the same shape has in a scene ('evert explain bodies.mesh'):
+  ball         -radius R
+  rounded_box  -size X,Y,Z -rounding R
+  ellipsoid    -radii A,B,C
+  capsule      -radius R -length L
+  cylinder     -radius R -length L
+  torus        -major_radius R -minor_radius R
+  cone         -bottom_radius R [-top_radius R] -length L
+  gear         -teeth N -root_radius R -tip_radius R -width W
+  figure       [-height H]
+  mesh         -surface FILE [-scale S]     what a closed surface (.obj, .stl, .ply, .off) encloses
+  union, intersection, difference   -of '[{shape: ..., ...}, ...]'
 evert mesh convert IN OUT [options]      read any format, write another
   -reorient                              mirror the cells of negative volume
   -drop_unused                           leave out nodes that no cell uses
@@ -40,6 +47,8 @@ Written, by the extension: .msh, .mesh, .vtk, .vtu.
 
 Examples:
   evert mesh generate torus -major_radius 0.5 -minor_radius 0.2 -edge_length 0.077 -o torus.msh
+  evert mesh generate difference -of '[{shape: box, size: [1, 1, 1]}, {shape: sphere, radius: 0.6}]' \\
+                      -edge_length 0.05 -o drilled.msh
   evert mesh generate box -size 1,0.2,0.2 -cells 50,10,10 -cell hex8 -o beam.vtu
   evert mesh convert scan.mesh scan.msh -reorient -drop_unused
   evert mesh quality scan.msh -json quality.json

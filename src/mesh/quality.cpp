@@ -2,11 +2,11 @@
 
 #include "evert/mesh/boundary.hpp"
 
+#include "components.hpp"
 #include "duplicate_nodes.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace evert {
 namespace {
@@ -44,29 +44,14 @@ double aspect_ratio(CellType type, std::span<const Vec3d> x, const EdgeRange& ed
   return std::sqrt(2.0 / 3) * edges.longest / smallest_height;
 }
 
-/// Number of sets of cells that share no node with the others.
 GlobalIndex count_components(const Mesh& mesh) {
-  std::vector<GlobalIndex> parent(mesh.nodes.size());
-  std::iota(parent.begin(), parent.end(), GlobalIndex{0});
-  const auto root = [&](GlobalIndex node) {
-    auto at = static_cast<std::size_t>(node);
-    while (parent[at] != static_cast<GlobalIndex>(at)) {
-      parent[at] = parent[static_cast<std::size_t>(parent[at])];  // halves the path
-      at = static_cast<std::size_t>(parent[at]);
-    }
-    return static_cast<GlobalIndex>(at);
-  };
+  const auto component = components_of_nodes(mesh);
   std::vector<bool> used(mesh.nodes.size());
-  for (const auto& block : mesh.cells) {
-    const auto stride = static_cast<std::size_t>(node_count(block.type));
-    for (std::size_t i = 0; i < block.nodes.size(); ++i) {
-      used[static_cast<std::size_t>(block.nodes[i])] = true;
-      if (i % stride != 0) parent[static_cast<std::size_t>(root(block.nodes[i]))] = root(block.nodes[i - 1]);
-    }
-  }
+  for (const auto& block : mesh.cells)
+    for (const auto node : block.nodes) used[static_cast<std::size_t>(node)] = true;
   GlobalIndex components = 0;
-  for (std::size_t node = 0; node < parent.size(); ++node)
-    components += used[node] && parent[node] == static_cast<GlobalIndex>(node) ? 1 : 0;
+  for (std::size_t node = 0; node < component.size(); ++node)
+    components += used[node] && component[node] == static_cast<GlobalIndex>(node) ? 1 : 0;
   return components;
 }
 

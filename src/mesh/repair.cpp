@@ -3,6 +3,7 @@
 #include "evert/core/error.hpp"
 #include "evert/mesh/cell_geometry.hpp"
 
+#include "components.hpp"
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -115,6 +116,36 @@ GlobalIndex drop_unused_nodes(Mesh& mesh) {
     std::ranges::transform(set.nodes, set.nodes.begin(), renumber);
     std::erase(set.nodes, -1);
   }
+  return dropped;
+}
+
+GlobalIndex keep_largest_component(Mesh& mesh) {
+  const auto component = components_of_nodes(mesh);
+  const auto component_of = [&](const CellBlock& block, std::size_t cell) {
+    const auto first = block.nodes[cell * static_cast<std::size_t>(node_count(block.type))];
+    return static_cast<std::size_t>(component[static_cast<std::size_t>(first)]);
+  };
+  std::vector<GlobalIndex> cells(mesh.nodes.size(), 0);
+  for (const auto& block : mesh.cells)
+    for (std::size_t cell = 0; cell < block.region.size(); ++cell) ++cells[component_of(block, cell)];
+  const auto largest = static_cast<std::size_t>(std::ranges::max_element(cells) - cells.begin());
+  GlobalIndex dropped = 0;
+  for (auto& block : mesh.cells) {
+    const auto n = static_cast<std::size_t>(node_count(block.type));
+    CellBlock kept{block.type, {}, {}};
+    for (std::size_t cell = 0; cell < block.region.size(); ++cell) {
+      if (component_of(block, cell) != largest) {
+        ++dropped;
+        continue;
+      }
+      kept.region.push_back(block.region[cell]);
+      if (!block.vectors.empty()) kept.vectors.push_back(block.vectors[cell]);
+      kept.nodes.insert(kept.nodes.end(), &block.nodes[cell * n], &block.nodes[cell * n] + n);
+    }
+    block = std::move(kept);
+  }
+  std::erase_if(mesh.cells, [](const CellBlock& block) { return block.region.empty(); });
+  drop_unused_nodes(mesh);
   return dropped;
 }
 

@@ -1,8 +1,9 @@
 #include "evert/scene/body_mesh.hpp"
 
 #include "evert/mesh/mesh_reader.hpp"
-#include "evert/shapes/solids.hpp"
+#include "evert/mesh/repair.hpp"
 
+#include "solid.hpp"
 #include <type_traits>
 
 namespace evert {
@@ -16,13 +17,15 @@ Mesh make(const BoxMesh& box) {
   return mesh;
 }
 
-Mesh make(const BallMesh& m) { return generate(Sphere(m.radius), "ball", m.edge_length); }
-Mesh make(const TorusMesh& m) {
-  return generate(Torus(m.major_radius, m.minor_radius), "torus", m.edge_length);
+Mesh make(const FilledShape& filled) {
+  Surfaces surfaces;
+  read_surfaces(filled.solid, surfaces);
+  auto mesh =
+      generate(*make_solid({.solid = filled.solid}, surfaces), name_of(filled.solid), filled.edge_length);
+  // of fingers thinner than an edge, beads would be left
+  if (std::holds_alternative<FigureShape>(filled.solid)) keep_largest_component(mesh);
+  return mesh;
 }
-Mesh make(const CylinderMesh& m) { return generate(cylinder(m.radius, m.length), "cylinder", m.edge_length); }
-Mesh make(const CapsuleMesh& m) { return generate(Capsule(m.radius, m.length), "capsule", m.edge_length); }
-Mesh make(const EllipsoidMesh& m) { return generate(Ellipsoid(m.radii), "ellipsoid", m.edge_length); }
 
 }  // namespace
 

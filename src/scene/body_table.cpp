@@ -5,8 +5,6 @@ namespace evert {
 
 using namespace schema;
 
-namespace {
-
 const Table<RotationConfig>& rotation_table() {
   static const auto table =
       Table<RotationConfig>("A rotation about an axis through the origin, by the right-hand rule.")
@@ -14,6 +12,8 @@ const Table<RotationConfig>& rotation_table() {
           .required("angle", &RotationConfig::angle, number("degrees"), "90", "Angle of the rotation.");
   return table;
 }
+
+namespace {
 
 const Table<TransformConfig>& transform_table() {
   static const auto table =

@@ -5,7 +5,7 @@
 #include "evert/scene/load.hpp"
 #include "evert/scene/material.hpp"
 
-#include "motion.hpp"
+#include "obstacles.hpp"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,25 +31,6 @@ std::optional<double> mass_damping_of(const std::optional<DampingConfig>& config
   if (!config) return {};
   if (config->mass_ratio) return 4 * std::numbers::pi * config->frequency * *config->mass_ratio;
   return config->mass_proportional;
-}
-
-/// Collective.
-std::unique_ptr<Obstacle> obstacle_of(MPI_Comm comm, const ObstacleConfig& config) {
-  std::unique_ptr<ImplicitSurface> surface;
-  RigidState start;
-  if (const auto* plane = std::get_if<HalfSpaceConfig>(&config.shape)) {
-    surface = std::make_unique<HalfSpace>(plane->point, plane->normal);
-  } else {
-    const auto& sphere = std::get<SphereConfig>(config.shape);
-    surface = std::make_unique<Sphere>(sphere.radius);
-    start.origin = sphere.center;
-  }
-  if (config.mass || config.density) {
-    auto body = rigid_body_of(config, *surface, start);
-    return std::make_unique<Obstacle>(config.name, config.friction, std::move(surface), std::move(body));
-  }
-  return std::make_unique<Obstacle>(config.name, config.friction, std::move(surface),
-                                    motion_of(comm, config, start));
 }
 
 PrescribedNodes prescribed_of(const ConstraintConfig& config, const LocalNodeSet& nodes) {
@@ -196,7 +177,7 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
   for (std::size_t r = 0; r < whole.region_body.size(); ++r)
     definition.properties.push_back(
         properties_of(scene.bodies[static_cast<std::size_t>(whole.region_body[r])], whole.region_group[r]));
-  for (const auto& obstacle : scene.obstacles) definition.obstacles.push_back(obstacle_of(comm, obstacle));
+  definition.obstacles = make_obstacles(comm, scene);
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
     definition.prescribed.push_back(prescribed_of(scene.constraints[c], mesh.node_sets[c]));
   definition.activations = activations_of(scene, whole.region_body, whole.region_group);

@@ -5,11 +5,11 @@
 #include "evert/scene/build.hpp"
 
 #include "fibres.hpp"
+#include "solid.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 // Rank 0's part of building a scene: all bodies as one mesh.
 namespace evert {
@@ -29,23 +29,13 @@ Bounds bounds_of(std::span<const Vec3d> points) {
   return b;
 }
 
-/// Rodrigues' formula.
-Mat3d rotation(const RotationConfig& rotate) {
-  const double angle = rotate.angle * std::numbers::pi / 180;
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  const auto& a = rotate.axis;
-  const Mat3d cross_axis{{{{0, a[2], -a[1]}, {-a[2], 0, a[0]}, {a[1], -a[0], 0}}}};
-  return c * identity<double>() + s * cross_axis + (1 - c) * outer(a, a);
-}
-
 /// Fit, then scale, then rotate, then translate.
 void place(Mesh& mesh, const TransformConfig& transform) {
   const auto bounds = bounds_of(mesh.nodes);
   const auto size = bounds.upper - bounds.lower;
   const auto center = transform.fit ? 0.5 * (bounds.lower + bounds.upper) : Vec3d{};
   const double fit = transform.fit ? *transform.fit / std::max({size[0], size[1], size[2]}) : 1;
-  const auto turn = transform.rotate ? rotation(*transform.rotate) : identity<double>();
+  const auto turn = transform.rotate ? rotation_of(*transform.rotate) : identity<double>();
   for (auto& block : mesh.cells)
     for (auto& vector : block.vectors) vector = turn * vector;
   for (auto& node : mesh.nodes) node = turn * (transform.scale * fit * (node - center)) + transform.translate;

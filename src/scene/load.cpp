@@ -46,15 +46,34 @@ void broadcast(MPI_Comm comm, std::string& text) {
   MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
 }
 
-/// Mesh files are named relative to the scene, those on the command line relative to the working directory.
-void resolve_mesh_paths(SceneConfig& scene, const Value& root) {
+/// Files are named relative to the scene, those on the command line relative to the working directory.
+void resolve_path(std::string& path, const Value& written, const std::filesystem::path& folder) {
+  if (!written.where.starts_with("-set ")) path = (folder / path).lexically_normal().string();
+}
+
+/// `map` is where the shape is written.
+void resolve_paths(SolidConfig& solid, const Value& map, const std::filesystem::path& folder) {
+  std::visit(
+      [&]<class Shape>(Shape& shape) {
+        if constexpr (std::is_same_v<Shape, MeshShape>)
+          resolve_path(shape.surface, *map.find("surface"), folder);
+        else if constexpr (requires { shape.of; })
+          for (std::size_t i = 0; i < shape.of.size(); ++i)
+            resolve_paths(shape.of[i].solid, map.find("of")->items[i], folder);
+      },
+      solid);
+}
+
+void resolve_paths(SceneConfig& scene, const Value& root) {
   const auto folder = std::filesystem::path(scene.file).parent_path();
   for (auto& body : scene.bodies) {
-    auto* mesh = std::get_if<FileMesh>(&body.mesh);
-    if (mesh == nullptr) continue;
-    const auto& written = *root.find("bodies")->find(body.name)->find("mesh")->find("file");
-    if (!written.where.starts_with("-set ")) mesh->path = (folder / mesh->path).lexically_normal().string();
+    const auto& written = *root.find("bodies")->find(body.name)->find("mesh");
+    if (auto* mesh = std::get_if<FileMesh>(&body.mesh))
+      resolve_path(mesh->path, *written.find("file"), folder);
+    if (auto* mesh = std::get_if<FilledShape>(&body.mesh)) resolve_paths(mesh->solid, written, folder);
   }
+  for (auto& obstacle : scene.obstacles)
+    resolve_paths(obstacle.shape.solid, *root.find("obstacles")->find(obstacle.name), folder);
 }
 
 /// The same for the files of motions.
@@ -99,7 +118,7 @@ SceneConfig parse_scene(std::string_view text, const std::string& file,
   apply_overrides(root, scene_table().info(), overrides);
   auto scene = scene_table().read(root, "");
   scene.file = file;
-  resolve_mesh_paths(scene, root);
+  resolve_paths(scene, root);
   resolve_motion_paths(scene, root);
   resolve_constraints(scene, root);
   resolve_events(scene, root);

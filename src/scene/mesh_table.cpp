@@ -1,3 +1,4 @@
+#include "shape_table.hpp"
 #include "tables.hpp"
 #include <cmath>
 #include <functional>
@@ -94,89 +95,17 @@ const Table<BoxMesh>& box_mesh() {
   return table;
 }
 
-const Table<BallMesh>& ball_mesh() {
-  static const auto table =
-      Table<BallMesh>("A ball.")
-          .required("radius", &BallMesh::radius, length(), "0.5", "Its radius.")
-          .required("edge_length", &BallMesh::edge_length, length(), "0.05", "Edge of the tetrahedra, about.")
-          .then([](BallMesh& ball, const Value& map, const std::string& path) {
-            expect_possible(4.19 * std::pow(ball.radius, 3), ball.edge_length, map, path);
-          });
-  return table;
-}
-
-const Table<TorusMesh>& torus_mesh() {
-  static const auto table = Table<TorusMesh>("A torus around the y axis.")
-                                .required("major_radius", &TorusMesh::major_radius, length(), "0.5",
-                                          "From the axis to the middle of the tube.")
-                                .required("minor_radius", &TorusMesh::minor_radius, length(), "0.2",
-                                          "Of the tube; less than major_radius.")
-                                .required("edge_length", &TorusMesh::edge_length, length(), "0.03",
-                                          "Edge of the tetrahedra, about.")
-                                .then([](TorusMesh& torus, const Value& map, const std::string& path) {
-                                  const auto* minor = map.find("minor_radius");
-                                  if (!(torus.minor_radius < torus.major_radius))
-                                    fail(*minor, join(path, "minor_radius"),
-                                         shown(*minor) + " is not allowed: must be less than major_radius");
-                                  expect_possible(19.8 * torus.major_radius * std::pow(torus.minor_radius, 2),
-                                                  torus.edge_length, map, path);
-                                });
-  return table;
-}
-
-const Table<CylinderMesh>& cylinder_mesh() {
-  static const auto table = Table<CylinderMesh>("A cylinder around the y axis.")
-                                .required("radius", &CylinderMesh::radius, length(), "0.2", "Its radius.")
-                                .required("length", &CylinderMesh::length, length(), "1", "Along the y axis.")
-                                .required("edge_length", &CylinderMesh::edge_length, length(), "0.05",
-                                          "Edge of the tetrahedra, about.")
-                                .then([](CylinderMesh& cylinder, const Value& map, const std::string& path) {
-                                  expect_possible(3.15 * std::pow(cylinder.radius, 2) * cylinder.length,
-                                                  cylinder.edge_length, map, path);
-                                });
-  return table;
-}
-
-const Table<CapsuleMesh>& capsule_mesh() {
-  static const auto table =
-      Table<CapsuleMesh>("A cylinder around the y axis with a half ball at both ends.")
-          .required("radius", &CapsuleMesh::radius, length(), "0.2", "Of the cylinder and the half balls.")
-          .required("length", &CapsuleMesh::length, length(), "1", "Of the cylinder alone.")
-          .required("edge_length", &CapsuleMesh::edge_length, length(), "0.05",
-                    "Edge of the tetrahedra, about.")
-          .then([](CapsuleMesh& capsule, const Value& map, const std::string& path) {
-            const double r = capsule.radius;
-            expect_possible(3.15 * r * r * (capsule.length + 1.34 * r), capsule.edge_length, map, path);
-          });
-  return table;
-}
-
-const Table<EllipsoidMesh>& ellipsoid_mesh() {
-  static const auto table =
-      Table<EllipsoidMesh>("An ellipsoid.")
-          .required("radii", &EllipsoidMesh::radii, vector3("m", above(0)), "[0.5, 0.3, 0.3]",
-                    "Along x, y and z.")
-          .required("edge_length", &EllipsoidMesh::edge_length, length(), "0.05",
-                    "Edge of the tetrahedra, about.")
-          .then([](EllipsoidMesh& ellipsoid, const Value& map, const std::string& path) {
-            const auto& r = ellipsoid.radii;
-            expect_possible(4.19 * r[0] * r[1] * r[2], ellipsoid.edge_length, map, path);
-          });
-  return table;
-}
-
 }  // namespace
 
 const Table<MeshConfig>& mesh_table() {
-  static const auto table = Table<MeshConfig>("A mesh: read from a file or generated, centred at the origin.")
-                                .chosen_by("generate", "The shape to generate.")
-                                .alternative_by_key("file", std::identity{}, file_mesh())
-                                .alternative("box", std::identity{}, box_mesh())
-                                .alternative("ball", std::identity{}, ball_mesh())
-                                .alternative("torus", std::identity{}, torus_mesh())
-                                .alternative("cylinder", std::identity{}, cylinder_mesh())
-                                .alternative("capsule", std::identity{}, capsule_mesh())
-                                .alternative("ellipsoid", std::identity{}, ellipsoid_mesh());
+  static const auto table = [] {
+    Table<MeshConfig> keys("A mesh: read from a file or generated, centred at the origin.");
+    keys.chosen_by("generate", "The shape to generate.")
+        .alternative_by_key("file", std::identity{}, file_mesh())
+        .alternative("box", std::identity{}, box_mesh());
+    add_filled_shapes(keys);
+    return keys;
+  }();
   return table;
 }
 

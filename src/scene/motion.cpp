@@ -101,8 +101,16 @@ std::string wrong_with(const std::vector<PoseKey>& keys_before, const PoseKey& k
   return "";
 }
 
-std::unique_ptr<RigidMotion> motion_of(MPI_Comm comm, const ObstacleConfig& obstacle,
-                                       const RigidState& start) {
+std::vector<std::vector<PoseKey>> read_motions(MPI_Comm comm, const SceneConfig& scene) {
+  std::vector<std::vector<PoseKey>> all(scene.obstacles.size());
+  for (std::size_t o = 0; o < all.size(); ++o)
+    if (const auto& motion = scene.obstacles[o].motion; motion && !motion->file.empty())
+      all[o] = read_keys(comm, motion->file);
+  return all;
+}
+
+std::unique_ptr<RigidMotion> motion_of(const ObstacleConfig& obstacle, const RigidState& start,
+                                       const std::vector<PoseKey>& keys) {
   if (!obstacle.motion) {
     auto moving = start;
     moving.velocity = obstacle.velocity;
@@ -110,8 +118,7 @@ std::unique_ptr<RigidMotion> motion_of(MPI_Comm comm, const ObstacleConfig& obst
   }
   const auto& motion = *obstacle.motion;
   const auto about = motion.about.value_or(start.origin);
-  if (!motion.file.empty())
-    return std::make_unique<KeyframedMotion>(start, about, read_keys(comm, motion.file));
+  if (!motion.file.empty()) return std::make_unique<KeyframedMotion>(start, about, keys);
   if (!motion.keyframes.empty()) return std::make_unique<KeyframedMotion>(start, about, motion.keyframes);
   if (motion.frequency > 0)
     return std::make_unique<Oscillation>(start, about, motion.amplitude, motion.angle, motion.frequency,
@@ -126,14 +133,13 @@ std::unique_ptr<RigidBody> rigid_body_of(const ObstacleConfig& obstacle, const I
                                          RigidState start) {
   const auto bounds = surface.bounds();
   if (!std::isfinite(norm(bounds.upper - bounds.lower)))
-    throw UserError("obstacles." + obstacle.name + ": goes on for ever, and so cannot have a mass");
+    throw UserError("goes on for ever, and so cannot have a mass");
   const auto unit = mass_of(surface);
   const auto mass = unit.times(obstacle.mass ? *obstacle.mass / unit.mass : *obstacle.density);
   const auto inverse_inertia = inverse(mass.inertia);
   if (!std::isfinite(norm(inverse_inertia)) || !(mass.mass > 0) || !std::isfinite(1 / mass.mass))
-    throw UserError("obstacles." + obstacle.name +
-                    formatted(": a mass of %g kg of this size is more or less than can be computed with",
-                              mass.mass));
+    throw UserError(
+        formatted("a mass of %g kg of this size is more or less than can be computed with", mass.mass));
   start.angular_velocity = obstacle.initial_angular_velocity;
   start.velocity = obstacle.initial_velocity - cross(start.angular_velocity, start.rotation * mass.center);
   return std::make_unique<RigidBody>(mass, start);

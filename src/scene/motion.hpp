@@ -6,13 +6,17 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace evert {
 
-/// Collective. What a scene says of the motion of an obstacle that is at `start` at t = 0. Throws UserError
-/// on all ranks where a table is wrong.
-[[nodiscard]] std::unique_ptr<RigidMotion> motion_of(MPI_Comm comm, const ObstacleConfig& obstacle,
-                                                     const RigidState& start);
+/// Collective. The tables of poses that obstacles have in files, per obstacle; empty for those without.
+/// Throws UserError on all ranks where a table is wrong.
+[[nodiscard]] std::vector<std::vector<PoseKey>> read_motions(MPI_Comm comm, const SceneConfig& scene);
+
+/// What a scene says of the motion of an obstacle that is at `start` at t = 0, with the `keys` of its file.
+[[nodiscard]] std::unique_ptr<RigidMotion> motion_of(const ObstacleConfig& obstacle, const RigidState& start,
+                                                     const std::vector<PoseKey>& keys);
 
 /// A body with the mass that the scene says, that is at `start` at t = 0. Throws UserError where `surface`
 /// goes on for ever.

@@ -91,10 +91,16 @@ std::vector<Entry> entries_of(const TableInfo& table, const Path& path) {
   return out;
 }
 
-void visit_all(const TableInfo& table, const Path& path, const auto& visit) {
+/// A table that occurs within itself is not visited there again: `within` are those that the path goes
+/// through.
+void visit_all(const TableInfo& table, const Path& path, const auto& visit,
+               std::vector<const TableInfo*> within = {}) {
+  within.push_back(&table);
   for (const auto& entry : entries_of(table, path)) {
     visit(entry);
-    if (entry.key.type.table != nullptr) visit_all(*entry.key.type.table, below(entry), visit);
+    const auto* next = entry.key.type.table;
+    if (next != nullptr && std::ranges::find(within, next) == within.end())
+      visit_all(*next, below(entry), visit, within);
   }
 }
 

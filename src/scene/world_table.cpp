@@ -1,3 +1,4 @@
+#include "shape_table.hpp"
 #include "tables.hpp"
 #include <cmath>
 #include <functional>
@@ -9,36 +10,6 @@ namespace evert {
 using namespace schema;
 
 namespace {
-
-// --- obstacles
-
-const Table<HalfSpaceConfig>& half_space_table() {
-  static const auto table =
-      Table<HalfSpaceConfig>("Everything behind a plane.")
-          .optional("normal", &HalfSpaceConfig::normal, direction(), "[0, 1, 0]",
-                    "Of the plane, out of the solid.")
-          .either("point", &HalfSpaceConfig::point, vector3("m"), "[0, 0, 0]",
-                  "Any point of the plane; the origin unless given.")
-          .either("offset", &HalfSpaceConfig::offset, number("m"), "0",
-                  "Instead of point: the plane's distance from the origin along normal.")
-          .then([](HalfSpaceConfig& plane, const Value& map, const std::string& path) {
-            if (map.find("offset") == nullptr) {
-              plane.offset = dot(plane.normal, plane.point);
-              return;
-            }
-            if (map.find("point") != nullptr) fail(map, path, "'point' and 'offset' exclude each other");
-            plane.point = plane.offset * plane.normal;
-          });
-  return table;
-}
-
-const Table<SphereConfig>& sphere_table() {
-  static const auto table =
-      Table<SphereConfig>("A ball.")
-          .required("center", &SphereConfig::center, vector3("m"), "[0, -1, 0]", "At the start.")
-          .required("radius", &SphereConfig::radius, number("m", above(0)), "0.5", "Its radius.");
-  return table;
-}
 
 // --- constraints
 
@@ -119,7 +90,7 @@ void finish_obstacle(ObstacleConfig& obstacle, const Value& map, const std::stri
       exclude(motion, mass, ": what has a mass moves by the forces on it, from 'initial_velocity' on");
   const bool rigid_body = obstacle.mass || obstacle.density;
   for (const char* mass : {"mass", "density"})
-    if (map.find(mass) != nullptr && std::holds_alternative<HalfSpaceConfig>(obstacle.shape))
+    if (map.find(mass) != nullptr && std::holds_alternative<HalfSpaceShape>(obstacle.shape.solid))
       fail(*map.find(mass), join(path, mass), "is not possible: a half_space goes on for ever");
   for (const char* key : {"initial_velocity", "initial_angular_velocity"})
     if (map.find(key) != nullptr && !rigid_body)
@@ -143,24 +114,24 @@ void finish_constraint(ConstraintConfig& constraint, const Value& map, const std
 }  // namespace
 
 const Table<ObstacleConfig>& obstacle_table() {
-  static const auto table =
-      Table<ObstacleConfig>("A rigid obstacle that all bodies collide with.")
-          .chosen_by("shape", "Its shape.")
-          .alternative("half_space", &ObstacleConfig::shape, half_space_table())
-          .alternative("sphere", &ObstacleConfig::shape, sphere_table())
-          .optional("friction", &ObstacleConfig::friction, friction_type(), "0.3", "Coulomb coefficient.")
-          .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.")
-          .optional("motion", &ObstacleConfig::motion, table_of(motion_table()),
-                    "{angular_velocity: [0, 0, 2]}", "Any other motion, in the place of velocity.")
-          .either("mass", &ObstacleConfig::mass, number("kg", above(0)), "5",
-                  "With a mass it is a rigid body: gravity, nodes and other obstacles move it.")
-          .either("density", &ObstacleConfig::density, number("kg/m^3", above(0)), "1000",
-                  "Instead of mass, times the volume of the shape.")
-          .optional("initial_velocity", &ObstacleConfig::initial_velocity, vector3("m/s"), "[0, -1, 0]",
-                    "Of a rigid body with mass, of its centre of mass.")
-          .optional("initial_angular_velocity", &ObstacleConfig::initial_angular_velocity, vector3("rad/s"),
-                    "[0, 0, 5]", "Of a rigid body with mass.")
-          .then(finish_obstacle);
+  static const auto table = [] {
+    Table<ObstacleConfig> keys("A rigid obstacle that all bodies collide with.");
+    add_shape_keys(keys);
+    return keys
+        .optional("friction", &ObstacleConfig::friction, friction_type(), "0.3", "Coulomb coefficient.")
+        .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.")
+        .optional("motion", &ObstacleConfig::motion, table_of(motion_table()),
+                  "{angular_velocity: [0, 0, 2]}", "Any other motion, in the place of velocity.")
+        .either("mass", &ObstacleConfig::mass, number("kg", above(0)), "5",
+                "With a mass it is a rigid body: gravity, nodes and other obstacles move it.")
+        .either("density", &ObstacleConfig::density, number("kg/m^3", above(0)), "1000",
+                "Instead of mass, times the volume of the shape.")
+        .optional("initial_velocity", &ObstacleConfig::initial_velocity, vector3("m/s"), "[0, -1, 0]",
+                  "Of a rigid body with mass, of its centre of mass.")
+        .optional("initial_angular_velocity", &ObstacleConfig::initial_angular_velocity, vector3("rad/s"),
+                  "[0, 0, 5]", "Of a rigid body with mass.")
+        .then(finish_obstacle);
+  }();
   return table;
 }
 

@@ -6,7 +6,8 @@ namespace {
 
 /// The scene with a ball as well.
 File scene_with_ball(const std::string& keys) {
-  return scene({{"petsc:", "  ball: {shape: sphere, center: [0.5, 1.4, 0.5], radius: 0.4" + keys + "}\npetsc:"}});
+  return scene(
+      {{"petsc:", "  ball: {shape: sphere, center: [0.5, 1.4, 0.5], radius: 0.4" + keys + "}\npetsc:"}});
 }
 
 Case bad_ball(const std::string& name, const std::string& keys, const std::vector<std::string>& says) {
@@ -31,7 +32,8 @@ const std::vector<Case> cases{
      .says = {"ball: sphere, friction 0, a rigid body of 268.083 kg"}},
     bad_ball("rigid_mass_negative", ", mass: -1", {"obstacles.ball.mass: '-1' is not allowed: must be > 0"}),
     bad_ball("rigid_mass_zero", ", mass: 0", {"obstacles.ball.mass: '0' is not allowed: must be > 0"}),
-    bad_ball("rigid_density_zero", ", density: 0", {"obstacles.ball.density: '0' is not allowed: must be > 0"}),
+    bad_ball("rigid_density_zero", ", density: 0",
+             {"obstacles.ball.density: '0' is not allowed: must be > 0"}),
     bad_ball("rigid_mass_not_finite", ", mass: .nan", {"obstacles.ball.mass", "must be finite"}),
     bad_ball("rigid_mass_and_density", ", mass: 1, density: 1000",
              {"obstacles.ball.mass: and 'density' exclude each other"}),

@@ -14,15 +14,13 @@ namespace {
 BuiltScene coarse_scene() {
   const char* root = std::getenv("EVERT_SOURCE_DIR");
   const auto file = std::string(root == nullptr ? "." : root) + "/examples/ball_drop/scene.yaml";
-  auto scene = load_scene(PETSC_COMM_WORLD, file,
-                          std::vector<std::string>{"bodies.mattress.mesh.edge_length=0.2"});
+  auto scene =
+      load_scene(PETSC_COMM_WORLD, file, std::vector<std::string>{"bodies.mattress.mesh.edge_length=0.2"});
   apply_petsc_block(scene);
   return build_scene(PETSC_COMM_WORLD, scene);
 }
 
-double energy(const Measurements& m) {
-  return m.kinetic_energy + m.elastic_energy + m.gravitational_energy;
-}
+double energy(const Measurements& m) { return m.kinetic_energy + m.elastic_energy + m.gravitational_energy; }
 
 TEST(BallDrop, SinksInAndIsThrownBack) {
   constexpr double start_height = 1.2, radius = 0.25, thickness = 0.3;
@@ -47,7 +45,8 @@ TEST(BallDrop, SinksInAndIsThrownBack) {
   test::verify("ball drop, height of the rebound over that of the fall", "0.1 to 0.9",
                (highest_after - lowest) / (start_height - lowest), "-");
   test::verify("ball drop, momentum less impulses over the impulse of gravity", "0", unbalanced, "<= 1e-6");
-  test::verify("ball drop, energy at the end over that at the start", "< 1", energy(end) / energy(start), "-");
+  test::verify("ball drop, energy at the end over that at the start", "< 1", energy(end) / energy(start),
+               "-");
   EXPECT_GT((thickness + radius - lowest) / thickness, 0.2);
   EXPECT_GT((highest_after - lowest) / (start_height - lowest), 0.1);
   EXPECT_LT((highest_after - lowest) / (start_height - lowest), 0.9);

@@ -19,4 +19,8 @@ GlobalIndex reorient(Mesh& mesh);
 /// many.
 GlobalIndex drop_unused_nodes(Mesh& mesh);
 
+/// Keeps only the largest set of cells that share no node with the others, of sets of alike size the first,
+/// and the nodes that it uses. Returns how many cells go.
+GlobalIndex keep_largest_component(Mesh& mesh);
+
 }  // namespace evert

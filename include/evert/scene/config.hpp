@@ -6,6 +6,7 @@
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/generators.hpp"
+#include "evert/scene/shape_config.hpp"
 
 #include <array>
 #include <cstddef>
@@ -18,7 +19,7 @@
 #include <vector>
 
 /// A scene as plain values, SI units, already checked: what scene/load.hpp makes and scene/build.hpp turns
-/// into objects. Keys, units, ranges and help stand in the tables of src/scene/schema_*.cpp, and only there.
+/// into objects. Keys, units, ranges and help stand in the tables of src/scene/*_table.cpp, and only there.
 /// A feature that the scene does not name is an empty optional or an empty list.
 namespace evert {
 
@@ -40,42 +41,15 @@ struct BoxMesh {
   double edge_length = 0;      ///< [m]; 0 when cells are given
 };
 
-/// The implicit shapes are centred at the origin; torus, cylinder and capsule have the y axis as theirs.
-struct BallMesh {
-  double radius = 0;       ///< [m]
-  double edge_length = 0;  ///< [m]
-};
-struct TorusMesh {
-  double major_radius = 0;  ///< [m]
-  double minor_radius = 0;  ///< [m]
-  double edge_length = 0;   ///< [m]
-};
-struct CylinderMesh {
-  double radius = 0;       ///< [m]
-  double length = 0;       ///< [m]
-  double edge_length = 0;  ///< [m]
-};
-/// A cylinder with a half ball at both ends.
-struct CapsuleMesh {
-  double radius = 0;       ///< [m]
-  double length = 0;       ///< [m] of the cylinder alone
-  double edge_length = 0;  ///< [m]
-};
-struct EllipsoidMesh {
-  Vec3d radii{};           ///< [m]
+/// Any shape that has an end, filled with tetrahedra.
+struct FilledShape {
+  SolidConfig solid;
   double edge_length = 0;  ///< [m]
 };
 
-using MeshConfig =
-    std::variant<FileMesh, BoxMesh, BallMesh, TorusMesh, CylinderMesh, CapsuleMesh, EllipsoidMesh>;
+using MeshConfig = std::variant<FileMesh, BoxMesh, FilledShape>;
 
 // --- bodies
-
-/// By the right-hand rule about the origin.
-struct RotationConfig {
-  Vec3d axis{{0, 0, 1}};  ///< unit vector
-  double angle = 0;       ///< [degrees]
-};
 
 /// Makes the rest shape and places it in the world: fit, then scale, then rotate, then translate.
 struct TransformConfig {
@@ -197,18 +171,6 @@ struct BodyConfig {
 
 // --- obstacles and constraints
 
-/// Everything on the far side of the plane is solid.
-struct HalfSpaceConfig {
-  Vec3d normal{{0, 1, 0}};  ///< unit vector, out of the solid
-  Vec3d point{};            ///< [m] a point of the plane at t = 0
-  double offset = 0;        ///< [m] normal · point
-};
-
-struct SphereConfig {
-  Vec3d center{};     ///< [m] at t = 0
-  double radius = 0;  ///< [m] > 0
-};
-
 /// How an obstacle moves from the place that its shape has at t = 0: steadily, by a table, or to and fro.
 struct MotionConfig {
   std::optional<Vec3d> about;      ///< [m] the point that it turns about; empty: the middle of the shape
@@ -224,7 +186,7 @@ struct MotionConfig {
 
 struct ObstacleConfig {
   std::string name;
-  std::variant<HalfSpaceConfig, SphereConfig> shape;
+  ShapeConfig shape;    ///< at t = 0
   double friction = 0;  ///< [-] Coulomb coefficient ≥ 0
   Vec3d velocity{};     ///< [m/s] constant; not with motion
   std::optional<MotionConfig> motion;

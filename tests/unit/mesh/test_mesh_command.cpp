@@ -43,7 +43,11 @@ TEST_F(MeshCommand, generates_every_shape_with_its_histogram) {
         "generate torus -major_radius 0.5 -minor_radius 0.2 -edge_length 0.1 -o @torus.msh",
         "generate cylinder -radius 0.2 -length 1 -edge_length 0.1 -o @cylinder.msh",
         "generate capsule -radius 0.2 -length 1 -edge_length 0.1 -o @capsule.msh",
-        "generate ellipsoid -radii 1,0.5,0.5 -edge_length 0.2 -o @ellipsoid.msh"}) {
+        "generate ellipsoid -radii 1,0.5,0.5 -edge_length 0.2 -o @ellipsoid.msh",
+        "generate rounded_box -size 1,1,1 -rounding 0.2 -edge_length 0.2 -o @rounded.msh",
+        "generate cone -bottom_radius 0.5 -length 1 -edge_length 0.2 -o @cone.msh",
+        "generate gear -teeth 8 -root_radius 0.3 -tip_radius 0.5 -width 0.2 -edge_length 0.05 -o @gear.msh",
+        "generate figure -edge_length 0.03 -o @figure.msh"}) {
     const auto text = run(line);
     expect_holds(text, {"dihedral angles", "%  #", "negative cells    0", "wrote "});
     EXPECT_GT(read_mesh(path(std::string(line).substr(std::string(line).find('@') + 1))).cell_count(), 0)
@@ -91,28 +95,32 @@ TEST_F(MeshCommand, refuses_wrong_usage) {
   const std::string box = "generate box -size 1,1,1 -edge_length 0.5 -o @b.msh ";
   expect_refused("", {"needs a command: generate, convert, quality or partition", "--help"});
   expect_refused("generat", {"there is no command 'generat'", "did you mean 'generate'?"});
-  expect_refused("generate", {"needs a shape: box, ball, torus, cylinder, capsule or ellipsoid"});
+  expect_refused("generate",
+                 {"needs a shape: box, ball, rounded_box, ellipsoid,", "union, intersection or difference"});
   expect_refused("generate torsu -o @t.msh", {"there is no shape 'torsu'", "did you mean 'torus'?"});
   expect_refused("generate ball -radius 1 -edge_length 0.5", {"evert mesh generate ball needs -o"});
-  expect_refused("generate ball -edge_length 0.5 -o @b.msh", {"needs -radius"});
+  expect_refused("generate ball -edge_length 0.5 -o @b.msh",
+                 {"evert mesh generate ball: 'radius' is missing [m]"});
   expect_refused("generate ball -raduis 1 -o @b.msh",
                  {"there is no option -raduis", "did you mean '-radius'?"});
   expect_refused("generate ball -radius 1 -radius 2 -o @b.msh", {"-radius is given twice"});
   expect_refused("generate ball -o @b.msh -edge_length 1 -radius", {"-radius needs a value"});
   expect_refused("generate ball -o @b.msh -edge_length 1 -radius 1m",
-                 {"-radius must be a finite number, not '1m'"});
+                 {"radius: '1m' has a unit: write the SI number alone [m]"});
   expect_refused("generate ball -o @b.msh -edge_length 1 -radius nan",
-                 {"must be a finite number, not 'nan'"});
+                 {"radius: 'nan' is not allowed: must be finite"});
   expect_refused("generate ball -o @b.msh -edge_length 1 -radius -1",
-                 {"radius is -1, but must be a positive"});
-  expect_refused("generate ball -o @b.msh -edge_length 0 -radius 1", {"edge_length is 0"});
+                 {"radius: '-1' is not allowed: must be > 0"});
+  expect_refused("generate ball -o @b.msh -edge_length 0 -radius 1",
+                 {"edge_length: '0' is not allowed: must be > 0"});
   expect_refused("generate ball -o @b.off -edge_length 1 -radius 1", {"b.off", "not '.off'"});
-  expect_refused(box + "-cells 1,1,1", {"either -edge_length or -cells"});
-  expect_refused(box + "-cell hex9", {"there is no cell 'hex9'", "did you mean 'hex8'?"});
+  expect_refused(box + "-cells 1,1,1", {"needs either 'cells' or 'edge_length'"});
+  expect_refused(box + "-cell hex9", {"cell: 'hex9' is not allowed: must be bcc,", "did you mean 'hex8'?"});
   expect_refused("generate box -size 1,1 -edge_length 0.5 -o @b.msh",
-                 {"three finite numbers like 1,0.5,2, not '1,1'"});
-  expect_refused("generate box -size 1,1,1 -edge_length 0.5 -hole 1,1 -o @b.msh", {"-hole needs -cells"});
-  expect_refused("generate box -size 1,1,1 -cells 2,2,2.5 -o @b.msh", {"three whole numbers like 10,5,5"});
+                 {"size: must be a list of 3 numbers, not of 2"});
+  expect_refused("generate box -size 1,1,1 -edge_length 0.5 -hole 1,1 -o @b.msh", {"hole: needs 'cells'"});
+  expect_refused("generate box -size 1,1,1 -cells 2,2,2.5 -o @b.msh",
+                 {"cells[2]: '2.5' is not allowed: must be a whole number"});
   expect_refused(box + "extra", {"'extra' is one argument too many"});
   expect_refused("convert", {"needs a mesh to read"});
   expect_refused("convert @box.msh", {"needs a file to write"});

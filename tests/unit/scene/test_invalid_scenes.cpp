@@ -35,9 +35,9 @@ const std::vector<Mistake> mistakes{
     {"misspelt_tag", "shape: sphere", "shpe: sphere",
      "scene.yaml:36: obstacles.ball.shpe: unknown key (did you mean 'shape'?)"},
     {"key_of_another_shape", "radius: 4", "radius: 4, normal: [0, 1, 0]",
-     "scene.yaml:36: obstacles.ball.normal: does not go with 'shape: sphere'; known there are shape, center, "
-     "radius, "
-     "friction, velocity, motion, mass, density, initial_velocity or initial_angular_velocity"},
+     "scene.yaml:36: obstacles.ball.normal: does not go with 'shape: sphere'; known there are shape, radius, "
+     "center, rotate, grow, friction, velocity, motion, mass, density, initial_velocity or "
+     "initial_angular_velocity"},
     {"merge_key", "density: 1000", "<<: {density: 1000}",
      "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, order, transform, "
      "density, velocity, spin, start, material, damping, fibres, activation, precision or groups"},
@@ -129,12 +129,14 @@ const std::vector<Mistake> mistakes{
      "scene.yaml:18: bodies.torus.material.model: 'neohookean' is not allowed: must be neo_hookean, "
      "rotated_linear, st_venant_kirchhoff, mooney_rivlin, spline, stable_neo_hookean, muscle or tendon (did "
      "you mean 'neo_hookean'?)"},
-    {"unknown_shape", "shape: sphere", "shape: cube",
-     "scene.yaml:36: obstacles.ball.shape: 'cube' is not allowed: must be half_space or sphere"},
+    {"unknown_shape", "shape: sphere", "shape: potato",
+     "scene.yaml:36: obstacles.ball.shape: 'potato' is not allowed: must be half_space, sphere, box, "
+     "rounded_box, "
+     "ellipsoid, capsule, cylinder, torus, cone, gear, figure, mesh, union, intersection or difference"},
     {"unknown_generator", "generate: torus", "generate: tours",
-     "scene.yaml:11: bodies.torus.mesh.generate: 'tours' is not allowed: must be box, ball, torus, cylinder, "
-     "capsule or "
-     "ellipsoid (did you mean 'torus'?)"},
+     "scene.yaml:11: bodies.torus.mesh.generate: 'tours' is not allowed: must be box, ball, rounded_box, "
+     "ellipsoid, capsule, cylinder, torus, cone, gear, figure, mesh, union, intersection or difference (did "
+     "you mean 'torus'?)"},
     {"unknown_field", "fields: [velocity, rank]", "fields: [velocity, ranks]",
      "scene.yaml:7: output.fields[1]: 'ranks' is not allowed: must be velocity, min_stretch, inversion or "
      "rank (did you "
@@ -144,7 +146,9 @@ const std::vector<Mistake> mistakes{
      "st_venant_kirchhoff, mooney_rivlin, spline, stable_neo_hookean, muscle or tendon, not a list"},
     // several keys together
     {"no_shape", "{shape: sphere, ", "{",
-     "scene.yaml:36: obstacles.ball: needs one of 'shape: half_space or shape: sphere'"},
+     "scene.yaml:36: obstacles.ball: needs one of 'shape: half_space, shape: sphere, shape: box, "
+     "shape: rounded_box, shape: ellipsoid, shape: capsule, shape: cylinder, shape: torus, shape: cone, "
+     "shape: gear, shape: figure, shape: mesh, shape: union, shape: intersection or shape: difference'"},
     {"two_selections", "node_set: x_min,", "node_set: x_min, sphere: {center: [0, 0, 0], radius: 1},",
      "scene.yaml:38: constraints[0]: 'node_set' and 'sphere' exclude each other"},
     {"no_selection", "node_set: x_min, ", "",
@@ -152,7 +156,7 @@ const std::vector<Mistake> mistakes{
     {"two_meshes", "generate: torus,", "file: a.msh, generate: torus,",
      "scene.yaml:11: bodies.torus.mesh: 'file' and 'generate: torus' exclude each other"},
     {"fat_torus", "minor_radius: 0.2", "minor_radius: 0.5",
-     "scene.yaml:11: bodies.torus.mesh.minor_radius: '0.5' is not allowed: must be less than major_radius"},
+     "scene.yaml:11: bodies.torus.mesh: minor_radius is 0.5, but must be less than major_radius, 0.5"},
     {"empty_box", "max: [1, 2, 3]", "max: [1, 0, 3]",
      "scene.yaml:30: bodies.box.mesh.max: must exceed min, but does not along y"},
     {"box_without_corner", "max: [1, 2, 3], ", "",

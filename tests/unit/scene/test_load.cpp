@@ -42,9 +42,9 @@ TEST(Load, reads_bodies_in_order) {
   ASSERT_EQ(scene.bodies.size(), 2U);
   const auto& torus = scene.bodies[0];
   EXPECT_EQ(torus.name, "torus");
-  const auto& mesh = std::get<TorusMesh>(torus.mesh);
-  EXPECT_EQ(mesh.major_radius, 0.5);
-  EXPECT_EQ(mesh.minor_radius, 0.2);
+  const auto& mesh = std::get<FilledShape>(torus.mesh);
+  EXPECT_EQ(std::get<TorusShape>(mesh.solid).major_radius, 0.5);
+  EXPECT_EQ(std::get<TorusShape>(mesh.solid).minor_radius, 0.2);
   EXPECT_EQ(mesh.edge_length, 0.1);
   EXPECT_EQ(torus.transform.fit, 2);
   EXPECT_EQ(torus.transform.scale, 0.5);
@@ -124,11 +124,11 @@ TEST(Load, reads_obstacles_with_unit_normals) {
   EXPECT_EQ(scene.obstacles[0].name, "ground");
   EXPECT_EQ(scene.obstacles[0].friction, 0.4);
   EXPECT_EQ(scene.obstacles[0].velocity, (Vec3d{{0, 0, 1}}));
-  const auto& plane = std::get<HalfSpaceConfig>(scene.obstacles[0].shape);
+  const auto& plane = std::get<HalfSpaceShape>(scene.obstacles[0].shape.solid);
   EXPECT_EQ(plane.normal, (Vec3d{{0, 1, 0}}));
   EXPECT_EQ(plane.offset, -1);
-  const auto& sphere = std::get<SphereConfig>(scene.obstacles[1].shape);
-  EXPECT_EQ(sphere.center, (Vec3d{{1, 2, 3}}));
+  const auto& sphere = std::get<SphereShape>(scene.obstacles[1].shape.solid);
+  EXPECT_EQ(scene.obstacles[1].shape.center, (Vec3d{{1, 2, 3}}));
   EXPECT_EQ(sphere.radius, 4);
   EXPECT_EQ(scene.obstacles[1].friction, 0);
 }
@@ -136,14 +136,14 @@ TEST(Load, reads_obstacles_with_unit_normals) {
 TEST(Load, finds_the_point_of_a_plane_from_its_offset) {
   const auto text = least_scene + "obstacles: {wall: {shape: half_space, normal: [0, 0, -5], offset: 2}}\n";
   const auto scene = parse_scene(text, "scene.yaml");
-  EXPECT_EQ(std::get<HalfSpaceConfig>(scene.obstacles[0].shape).point, (Vec3d{{0, 0, -2}}));
+  EXPECT_EQ(std::get<HalfSpaceShape>(scene.obstacles[0].shape.solid).point, (Vec3d{{0, 0, -2}}));
 }
 
 TEST(Load, makes_unit_vectors_of_any_length) {
   for (const auto* vector : {"[3e200, 4e200, 0]", "[3e-200, 4e-200, 0]", "[3, 4, 0]"}) {
     const auto text = least_scene + "obstacles: {wall: {shape: half_space, normal: " + vector + "}}\n";
     const auto scene = parse_scene(text, "scene.yaml");
-    const auto normal = std::get<HalfSpaceConfig>(scene.obstacles[0].shape).normal;
+    const auto normal = std::get<HalfSpaceShape>(scene.obstacles[0].shape.solid).normal;
     EXPECT_NEAR(normal[0], 0.6, 1e-15) << vector;
     EXPECT_NEAR(normal[1], 0.8, 1e-15) << vector;
   }

@@ -19,7 +19,7 @@ TEST(Overrides, set_values_of_every_kind) {
   EXPECT_FALSE(with({"integrator.time_step=auto"}).integrator.time_step);
   EXPECT_EQ(with({"gravity=[1, 2, 3]"}).gravity, (Vec3d{{1, 2, 3}}));
   EXPECT_EQ(with({"gravity.1=-1"}).gravity, (Vec3d{{0, -1, 0}}));
-  EXPECT_EQ(std::get<TorusMesh>(with({"bodies.torus.mesh.edge_length=0.07"}).bodies[0].mesh).edge_length,
+  EXPECT_EQ(std::get<FilledShape>(with({"bodies.torus.mesh.edge_length=0.07"}).bodies[0].mesh).edge_length,
             0.07);
   EXPECT_EQ(with({"bodies.torus.groups.tendon.density=5"}).bodies[0].groups[0].density, 5);
   EXPECT_EQ(with({"constraints.2.until=9"}).constraints[2].until, 9);
@@ -56,13 +56,13 @@ TEST(Overrides, replace_the_keys_of_another_alternative) {
   const auto from_file = with({"bodies.torus.mesh.file=bunny.mesh"});
   EXPECT_EQ(std::get<FileMesh>(from_file.bodies[0].mesh).path, "bunny.mesh");
   const auto ball = with({"bodies.torus.mesh.generate=ball", "bodies.torus.mesh.radius=2"});
-  EXPECT_EQ(std::get<BallMesh>(ball.bodies[0].mesh).edge_length, 0.1);  // goes with both
+  EXPECT_EQ(std::get<FilledShape>(ball.bodies[0].mesh).edge_length, 0.1);  // goes with both
   const auto back =
       with({"bodies.torus.mesh.file=x.msh", "bodies.torus.mesh={generate: ball, radius: 2, edge_length: 1}"});
-  EXPECT_EQ(std::get<BallMesh>(back.bodies[0].mesh).radius, 2);
+  EXPECT_EQ(std::get<SphereShape>(std::get<FilledShape>(back.bodies[0].mesh).solid).radius, 2);
   const auto sphere = with(
       {"obstacles.ground.shape=sphere", "obstacles.ground.center=[0, 0, 0]", "obstacles.ground.radius=1"});
-  EXPECT_EQ(std::get<SphereConfig>(sphere.obstacles[0].shape).radius, 1);
+  EXPECT_EQ(std::get<SphereShape>(sphere.obstacles[0].shape.solid).radius, 1);
   EXPECT_EQ(sphere.obstacles[0].friction, 0.4);
   const auto selection = with({"constraints.0.box={min: [0, 0, 0], max: [1, 1, 1]}"});
   EXPECT_TRUE(std::holds_alternative<BoxSelection>(selection.constraints[0].nodes));
