@@ -122,10 +122,24 @@ void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& b
                           (scene.integrator.mass == MassForm::consistent ? ", consistent" : ""));
 }
 
-void report_surroundings(Report& report, const SceneConfig& scene, const DistributedMesh& mesh) {
+std::string motion_text(const ObstacleConfig& obstacle, const Simulation& simulation) {
+  for (const auto& built : simulation.obstacles())
+    if (built->name() == obstacle.name && built->body() != nullptr)
+      return formatted(", a rigid body of %.6g kg", built->body()->mass().mass);
+  if (!obstacle.motion) return norm(obstacle.velocity) > 0 ? ", moving steadily" : "";
+  if (!obstacle.motion->file.empty()) return ", moving as " + obstacle.motion->file + " says";
+  if (!obstacle.motion->keyframes.empty()) return ", moving by keyframes";
+  return obstacle.motion->frequency > 0
+             ? formatted(", moving to and fro at %g Hz", obstacle.motion->frequency)
+             : ", moving steadily";
+}
+
+void report_surroundings(Report& report, const SceneConfig& scene, const Simulation& simulation) {
+  const auto& mesh = simulation.mesh();
   for (const auto& obstacle : scene.obstacles) {
     report.line("obstacles", obstacle.name + ": " + name_of(obstacle.shape.solid) +
-                                 formatted(", friction %g", obstacle.friction));
+                                 formatted(", friction %g", obstacle.friction) +
+                                 motion_text(obstacle, simulation));
   }
   for (std::size_t c = 0; c < scene.constraints.size(); ++c) {
     const auto& constraint = scene.constraints[c];
@@ -271,7 +285,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
   Report report(out);
   report.line("scene", scene.name + " (" + scene.file + ")");
   report_bodies(report, scene, built);
-  report_surroundings(report, scene, built.simulation->mesh());
+  report_surroundings(report, scene, *built.simulation);
   report_cost(report, scene, *built.simulation);
   reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, solvers_of(*built.simulation));
   report.line("valid", "nothing wrong was found");

@@ -71,8 +71,9 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
   observers.statistics = observers.add(std::make_unique<RunStatistics>(look_interval(scene)));
   if (scene.output.frames_per_second) {
     const auto fields = fields_of(scene.output);
-    auto writer = restarted ? FrameWriter::continue_from(mesh, files("run.h5"), fields, simulation.time())
-                            : FrameWriter(mesh, files("run.h5"), fields);
+    auto writer = restarted ? FrameWriter::continue_from(mesh, files("run.h5"), fields, simulation.time(),
+                                                         simulation.obstacles())
+                            : FrameWriter(mesh, files("run.h5"), fields, simulation.obstacles());
     observers.frames = observers.add(
         std::make_unique<FrameObserver>(std::move(writer), 1 / *scene.output.frames_per_second));
   }
@@ -80,6 +81,13 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
     auto log = restarted ? EnergyLog::continue_from(mesh.comm, files("energy.csv"), simulation.time())
                          : EnergyLog(mesh.comm, files("energy.csv"));
     observers.add(std::make_unique<EnergyObserver>(std::move(log), *scene.output.energy_log));
+    if (!simulation.obstacles().empty()) {
+      const auto obstacles = simulation.obstacles();
+      auto rows = restarted ? ObstacleLog::continue_from(mesh.comm, files("obstacles.csv"), obstacles,
+                                                         simulation.time())
+                            : ObstacleLog(mesh.comm, files("obstacles.csv"), obstacles);
+      observers.add(std::make_unique<ObstacleObserver>(std::move(rows), *scene.output.energy_log));
+    }
   }
   observers.checkpoints = observers.add(
       std::make_unique<CheckpointObserver>(CheckpointWriter(mesh, files("checkpoint.h5"), scene.identity),
@@ -119,6 +127,9 @@ RunSummary summarize(const SceneConfig& scene, const BuiltScene& built, const Ob
   summary.max_inverted_time = observers.statistics->max_inverted_time;
   summary.quadrature_points = quadrature_points_of(simulation.mesh());
   summary.final_state = simulation.measure();
+  const auto impulses = simulation.obstacle_impulses();
+  for (std::size_t o = 0; o < impulses.size(); ++o)
+    summary.obstacles.emplace_back(simulation.obstacles()[o]->name(), impulses[o]);
   summary.cpu_level = kernels::chosen_cpu_level().name;
   for (const auto& body : built.bodies)
     summary.shape_errors.emplace_back(body.name, rms_shape_error(simulation.mesh(), simulation.positions(),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace evert {
 
@@ -38,15 +39,42 @@ void FrameObserver::write(const Simulation& simulation) {
        [&](std::size_t block, std::span<double> per_cell) { simulation.min_stretch(block, per_cell); }});
 }
 
-double EnergyObserver::next_stop(double time) const {
-  return interval_ > 0 ? Schedule(interval_).next_after(time) : Observer::next_stop(time);
+namespace {
+
+double next_row(double interval, double time) {
+  return interval > 0 ? Schedule(interval).next_after(time) : std::numeric_limits<double>::infinity();
 }
 
+/// The state that a restart begins with: the run before has written its row.
+bool is_first_of_restart(const Simulation& simulation, const StepReport& report) {
+  return report.dt == 0 && simulation.steps() > 0;
+}
+
+bool row_due(double interval, const Simulation& simulation) {
+  return !(interval > 0) || Schedule(interval).due(simulation.time());
+}
+
+}  // namespace
+
+double EnergyObserver::next_stop(double time) const { return next_row(interval_, time); }
+
 void EnergyObserver::observe(Simulation& simulation, const StepReport& report) {
-  const bool first_of_restart = report.dt == 0 && simulation.steps() > 0;
-  if (first_of_restart || (interval_ > 0 && !Schedule(interval_).due(simulation.time()))) return;
+  if (is_first_of_restart(simulation, report) || !row_due(interval_, simulation)) return;
   const PhaseScope scope(Phase::io);
   log_.write(simulation.steps(), simulation.time(), simulation.measure());
+}
+
+double ObstacleObserver::next_stop(double time) const { return next_row(interval_, time); }
+
+void ObstacleObserver::observe(Simulation& simulation, const StepReport& report) {
+  const bool begins = is_first_of_restart(simulation, report);
+  if (!begins && !row_due(interval_, simulation)) return;
+  const PhaseScope scope(Phase::io);
+  const auto impulses = simulation.obstacle_impulses();
+  if (begins)
+    log_.begin_at(simulation.time(), impulses);
+  else
+    log_.write(simulation.steps(), simulation.time(), simulation.obstacles(), impulses);
 }
 
 CheckpointObserver::CheckpointObserver(CheckpointWriter writer, const CheckpointConfig& config)

@@ -156,18 +156,25 @@ void Collisions::resolve_node(LocalIndex node, std::span<double> x, std::span<do
   const auto slides_on = rubbed(sliding, most_friction(contact, impact.change));
   const bool rough =
       std::any_of(touches.begin(), touches.end(), [&](const Touch& touch) { return friction(touch) > 0; });
-  contact.sticks =
+  const bool stays =
       rough && (contact.pinched ||
                 norm(slides_on) <= standstill * (norm(before) + norm(led) + norm(contact.surface_velocity)));
+  // How hard a body is hit that gives way, the solve will say: all of its impulse is left to that, and it
+  // holds the node as long as friction may.
+  contact.yields = std::any_of(touches.begin(), touches.end(),
+                               [&](const Touch& touch) { return body(touch).body() != nullptr; });
+  contact.sticks = stays || (rough && contact.yields);
   const auto after = before + impact.change + (contact.sticks ? Vec3d{} : slides_on) - sliding;
-  contact.impulse = masses_[static_cast<std::size_t>(node)] * (after - before);
-  set_node_value(v, node, after);
+  if (!contact.yields) {
+    contact.impulse = masses_[static_cast<std::size_t>(node)] * (after - before);
+    set_node_value(v, node, after);
+  }
 
   // The position: out of the bodies, which is a change of the velocity that led here, with its friction.
   const auto carried = mean_velocity(
       touches, [&](const Obstacle& obstacle) { return obstacle.mean_velocity(contact.position); });
   const auto led_along = contact.tangent * (led - carried);
-  const auto left_along = contact.sticks ? Vec3d{} : rubbed(led_along, out_friction);
+  const auto left_along = stays ? Vec3d{} : rubbed(led_along, out_friction);
   contact.position += dt * (left_along - led_along);
   set_node_value(x, node, contact.position);
   contacts_.push_back(contact);
@@ -285,13 +292,41 @@ Collisions::Contact Collisions::after_solve(Contact contact, const Vec3d& veloci
   return contact;
 }
 
+/// The normal part of the change is that which the normals of all bodies see: none of those that have not
+/// changed.
+void Collisions::follow(std::size_t obstacle, const RigidState& before) {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    auto& contact = contacts_[i];
+    const auto touches = touches_of(contact);
+    const auto is_touched = [obstacle](const Touch& touch) { return touch.obstacle == obstacle; };
+    if (std::none_of(touches.begin(), touches.end(), is_touched)) continue;
+    const auto change =
+        obstacles_[obstacle]->velocity(contact.position) - before.velocity_at(contact.position);
+    Vec3d through{};
+    auto open = identity<double>();
+    for (const auto& touch : touches) {
+      const auto left = open * touch.normal;
+      const double square = dot(left, left);
+      if (square < 1e-12) continue;  // the normals before say it
+      const double wanted = is_touched(touch) ? dot(touch.normal, change) : 0;
+      through += ((wanted - dot(touch.normal, through)) / square) * left;
+      open -= (1 / square) * outer(left, left);
+    }
+    const auto surface =
+        mean_velocity(touches, [&](const Obstacle& one) { return one.velocity(contact.position); });
+    const auto along = contact.tangent * (surface - contact.surface_velocity);
+    constraints_[i].prescribed += through + (contact.sticks ? along : Vec3d{});
+    contact.surface_velocity = surface;
+  }
+}
+
 // --- after it
 
 void Collisions::stop_reversed(std::span<double> v) {
   for (auto& contact : contacts_) {
     const auto velocity = node_value(v, contact.node);
     const auto sliding = contact.tangent * (velocity - contact.surface_velocity);
-    if (!is_turned(sliding, contact.sliding)) continue;
+    if (contact.yields || !is_turned(sliding, contact.sliding)) continue;
     set_node_value(v, contact.node, velocity - sliding);
     contact.impulse -= masses_[static_cast<std::size_t>(contact.node)] * sliding;
   }

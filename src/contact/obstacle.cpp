@@ -11,6 +11,16 @@ Obstacle::Obstacle(std::string name, double friction, std::unique_ptr<ImplicitSu
   move_to({.end = 0, .dt = 1});
 }
 
+Obstacle::Obstacle(std::string name, double friction, std::unique_ptr<ImplicitSurface> surface,
+                   std::unique_ptr<RigidBody> body)
+    : name_(std::move(name)),
+      friction_(friction),
+      surface_(std::move(surface)),
+      motion_(std::move(body)),
+      body_(static_cast<RigidBody*>(motion_.get())) {
+  move_to({.end = 0, .dt = 1});
+}
+
 void Obstacle::move_to(const StepInterval& step) {
   step_ = step;
   before_ = motion_->at(step.end - step.dt);

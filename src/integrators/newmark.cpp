@@ -1,5 +1,6 @@
 #include "evert/integrators/newmark.hpp"
 
+#include "evert/core/collective.hpp"
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
 
@@ -33,6 +34,7 @@ void set_vec(Vec vec, Value&& value) {
 Newmark::Newmark(const System& system) : solver_(system.mesh, system.elastic), predicted_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
   constraints_.reserve(system.masses().size());
+  if (!system.rigid.empty()) coupling_.emplace(system);
 }
 
 StepReport Newmark::advance(System& system, double dt) {
@@ -42,6 +44,8 @@ StepReport Newmark::advance(System& system, double dt) {
   if (!held.colliding) account_for_mass_damping(system, dt / 2);
   report.cg_iterations += correct(system, dt, held.colliding);
   if (held.colliding || held.prescribed) report.cg_iterations += rub(system);
+  if (coupling_) coupling_->finish(system);
+  account_for_obstacles(system, dt);
   account_for_mass_damping(system, implicit_);
   remember_change(system, system.v.owned(), predicted_.owned());
   report.contacts = system.collisions.contacts();
@@ -94,6 +98,7 @@ Newmark::Held Newmark::collide(System& system, double dt) {
   constraints_.clear();
   if (!system.collisions.any_obstacles() && system.prescribed.empty()) return {};
   prescribed_ = system.prescribed.at(system.time + dt);
+  if (coupling_) system.rigid.advance({system.time + dt, dt}, system.gravity);
   system.collisions.resolve(system.x.owned(), system.v.owned(), predicted_.owned(), prescribed_,
                             {system.time + dt, dt});
   system.x.touched();
@@ -135,13 +140,14 @@ bool obeys_coulomb(const System& system, std::span<const double> reaction) {
 /// right, until friction is Coulomb's. Then the account of what the constraints exerted.
 int Newmark::rub(System& system) {
   auto& collisions = system.collisions;
-  int iterations = 0;
+  int iterations = couple(system);
   auto reaction = solver_.reaction();
   for (int pass = 0; pass < most_friction_passes; ++pass) {
     if (obeys_coulomb(system, reaction)) break;
     collisions.slide(system.v.owned(), reaction);
     join(prescribed_, collisions.constraints(), constraints_);
     iterations += solver_.refine(system.v, constraints_);
+    iterations += couple(system);
     reaction = solver_.reaction();
   }
   collisions.stop_reversed(system.v.owned());
@@ -152,8 +158,42 @@ int Newmark::rub(System& system) {
     const auto r = node_value(reaction, c.node);
     system.impulses.constraint += r - c.free * r;
   }
-  system.impulses.contact += collisions.impulse();
   return iterations;
+}
+
+/// Takes the rigid bodies that have a mass to the velocities that go with what the nodes do, and the nodes to
+/// these.
+int Newmark::couple(System& system) {
+  if (!coupling_) return 0;
+  int iterations = 0;
+  system.collisions.share_impulses(solver_.reaction(), prescribed_, constraints_);
+  coupling_->solve(system, [&](std::span<const RigidState> before) {
+    for (std::size_t b = 0; b < before.size(); ++b)
+      system.collisions.follow(system.rigid.bodies()[b], before[b]);
+    join(prescribed_, system.collisions.constraints(), constraints_);
+    iterations += solver_.refine(system.v, constraints_);
+    system.collisions.share_impulses(solver_.reaction(), prescribed_, constraints_);
+  });
+  return iterations;
+}
+
+/// What each obstacle gave, to nodes and to bodies, and what came from those that have no momentum of their
+/// own. Every rank has all bodies: one of them counts what they got.
+void Newmark::account_for_obstacles(System& system, double dt) {
+  const bool counts_bodies = rank_of(system.mesh.comm) == 0;
+  for (std::size_t o = 0; o < system.obstacle_impulses.size(); ++o) {
+    auto given = system.collisions.impulse_of(o);
+    if (counts_bodies && !system.rigid.empty()) {
+      given.linear += system.rigid.impulse_of(o).first;
+      given.angular += system.rigid.impulse_of(o).second;
+    }
+    system.obstacle_impulses[o].linear += given.linear;
+    system.obstacle_impulses[o].angular += given.angular;
+    if (system.collisions.obstacles()[o]->body() == nullptr) system.impulses.contact += given.linear;
+  }
+  if (!counts_bodies) return;
+  for (const auto number : system.rigid.bodies())
+    system.impulses.gravity += dt * system.rigid.body(number).mass().mass * system.gravity;
 }
 
 /// What mass-proportional damping takes off the momentum in a time `dt` at the present velocities.

@@ -3,17 +3,20 @@
 namespace evert {
 
 System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
-               PrescribedMotion& prescribed_motion, const Vec3d& gravitation, BodyForce force)
+               RigidDynamics& rigid_dynamics, PrescribedMotion& prescribed_motion, const Vec3d& gravitation,
+               BodyForce force)
     : mesh(distributed),
       elastic(elastic_forces),
       collisions(node_collisions),
+      rigid(rigid_dynamics),
       prescribed(prescribed_motion),
       gravity(gravitation),
       body_force(std::move(force)),
       x(distributed),
       v(distributed),
       v_change(distributed),
-      f(distributed) {
+      f(distributed),
+      obstacle_impulses(node_collisions.obstacles().size()) {
   const auto rest = std::span(distributed.rest_positions);
   for (std::size_t node = 0; node < rest.size(); ++node)
     for (std::size_t k = 0; k < 3; ++k) x.local()[3 * node + k] = rest[node][k];

@@ -48,10 +48,36 @@ constexpr std::array columns{
 };
 // clang-format on
 
-std::string header() {
+std::string header(const std::vector<std::string>& names) {
   std::string text = "time [s],step";
-  for (const auto& column : columns) (text += ',') += column.name;
+  for (const auto& name : names) (text += ',') += name;
   return text + '\n';
+}
+
+std::vector<std::string> energy_columns() {
+  std::vector<std::string> names;
+  for (const auto& column : columns) names.emplace_back(column.name);
+  return names;
+}
+
+struct Quantity {
+  std::string_view name, unit;
+};
+// clang-format off
+constexpr std::array quantities{
+    Quantity{"impulse", "N s"}, Quantity{"angular_impulse", "N m s"}, Quantity{"force", "N"},
+    Quantity{"position", "m"}, Quantity{"velocity", "m/s"}, Quantity{"angular_velocity", "rad/s"},
+};
+// clang-format on
+
+std::vector<std::string> obstacle_columns(std::span<const std::unique_ptr<Obstacle>> obstacles) {
+  std::vector<std::string> names;
+  for (const auto& obstacle : obstacles)
+    for (const auto& [name, unit] : quantities)
+      for (const char axis : {'x', 'y', 'z'})
+        names.push_back(obstacle->name() + '.' + std::string(name) + '_' + axis + " [" + std::string(unit) +
+                        ']');
+  return names;
 }
 
 /// The first value of a row.
@@ -61,24 +87,24 @@ double time_of(std::string_view row) {
   return time;
 }
 
-/// Header and rows up to `time` of the log at `path`; a last row cut by a kill is left out.
-std::string rows_until(const std::string& path, double time) {
+/// `header` and rows up to `time` of the log at `path`; a last row cut by a kill is left out.
+std::string rows_until(const std::string& path, const std::string& header, double time) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return header();
+  if (!file) return header;
   std::string line;
-  if (!std::getline(file, line) || line + '\n' != header())
-    throw UserError("cannot continue '" + path + "': it is not an energy log with the columns of this evert");
-  std::string kept = header();
+  if (!std::getline(file, line) || line + '\n' != header)
+    throw UserError("cannot continue '" + path + "': it is not a log with the columns of this evert");
+  std::string kept = header;
   while (std::getline(file, line) && !file.eof() && time_of(line) <= time) (kept += line) += '\n';
   return kept;
 }
 
 }  // namespace
 
-EnergyLog::EnergyLog(MPI_Comm comm, const std::string& path) : EnergyLog(comm, path, header()) {}
+CsvLog::CsvLog(MPI_Comm comm, const std::string& path, const std::vector<std::string>& names)
+    : CsvLog(comm, path, header(names)) {}
 
-EnergyLog::EnergyLog(MPI_Comm comm, const std::string& path, const std::string& begin)
-    : comm_(comm), path_(path) {
+CsvLog::CsvLog(MPI_Comm comm, const std::string& path, const std::string& begin) : comm_(comm), path_(path) {
   on_root(comm_, [&] {
     require_writable(path_);
     file_.reset(std::fopen(path_.c_str(), "wb"));
@@ -87,23 +113,65 @@ EnergyLog::EnergyLog(MPI_Comm comm, const std::string& path, const std::string& 
   });
 }
 
-EnergyLog EnergyLog::continue_from(MPI_Comm comm, const std::string& path, double time) {
+CsvLog CsvLog::continue_from(MPI_Comm comm, const std::string& path, const std::vector<std::string>& names,
+                             double time) {
   std::string begin;
-  on_root(comm, [&] { begin = rows_until(path, time); });
+  on_root(comm, [&] { begin = rows_until(path, header(names), time); });
   return {comm, path, begin};
 }
 
-void EnergyLog::append(const std::string& text) {
+void CsvLog::append(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0)
     throw UserError("cannot write '" + path_ + "': " + std::strerror(errno));
 }
 
-void EnergyLog::write(std::int64_t step, double time, const Measurements& measurements) {
+void CsvLog::write(std::int64_t step, double time, std::span<const double> values) {
   on_root(comm_, [&] {
     std::string row = shortest(time) + ',' + std::to_string(step);
-    for (const auto& column : columns) (row += ',') += shortest(column.value(measurements));
+    for (const double value : values) (row += ',') += shortest(value);
     append(row + '\n');
   });
+}
+
+EnergyLog::EnergyLog(MPI_Comm comm, const std::string& path) : log_(comm, path, energy_columns()) {}
+
+EnergyLog EnergyLog::continue_from(MPI_Comm comm, const std::string& path, double time) {
+  return EnergyLog(CsvLog::continue_from(comm, path, energy_columns(), time));
+}
+
+void EnergyLog::write(std::int64_t step, double time, const Measurements& measurements) {
+  std::array<double, columns.size()> values{};
+  for (std::size_t i = 0; i < columns.size(); ++i) values[i] = columns[i].value(measurements);
+  log_.write(step, time, values);
+}
+
+ObstacleLog::ObstacleLog(MPI_Comm comm, const std::string& path, Obstacles obstacles)
+    : log_(comm, path, obstacle_columns(obstacles)) {}
+
+ObstacleLog ObstacleLog::continue_from(MPI_Comm comm, const std::string& path, Obstacles obstacles,
+                                       double time) {
+  return ObstacleLog(CsvLog::continue_from(comm, path, obstacle_columns(obstacles), time));
+}
+
+void ObstacleLog::begin_at(double time, std::span<const ObstacleImpulse> impulses) {
+  last_time_ = time;
+  last_.assign(impulses.begin(), impulses.end());
+}
+
+void ObstacleLog::write(std::int64_t step, double time, Obstacles obstacles,
+                        std::span<const ObstacleImpulse> impulses) {
+  last_.resize(impulses.size());
+  std::vector<double> values;
+  for (std::size_t o = 0; o < impulses.size(); ++o) {
+    const auto& state = obstacles[o]->state();
+    const double elapsed = time - last_time_;
+    const auto force = elapsed > 0 ? (1 / elapsed) * (impulses[o].linear - last_[o].linear) : Vec3d{};
+    for (const auto& vector : {impulses[o].linear, impulses[o].angular, force, state.origin, state.velocity,
+                               state.angular_velocity})
+      values.insert(values.end(), vector.components.begin(), vector.components.end());
+  }
+  begin_at(time, impulses);
+  log_.write(step, time, values);
 }
 
 }  // namespace evert

@@ -68,27 +68,30 @@ void require_run_of(const DistributedMesh& mesh, const std::string& path) {
 
 }  // namespace
 
-FrameWriter::FrameWriter(const DistributedMesh& mesh, Hdf5File file, const FrameFields& fields)
+FrameWriter::FrameWriter(const DistributedMesh& mesh, Hdf5File file, const FrameFields& fields,
+                         Obstacles obstacles)
     : mesh_(mesh),
       fields_(fields),
       nodes_(natural_node_order(mesh)),
       cells_(natural_cell_order(mesh)),
       blocks_(count_blocks(mesh)),
+      obstacles_(obstacles),
       file_(std::move(file)) {}
 
-FrameWriter::FrameWriter(const DistributedMesh& mesh, const std::string& path, const FrameFields& fields)
-    : FrameWriter(mesh, begin_file(mesh.comm, path), fields) {
+FrameWriter::FrameWriter(const DistributedMesh& mesh, const std::string& path, const FrameFields& fields,
+                         Obstacles obstacles)
+    : FrameWriter(mesh, begin_file(mesh.comm, path), fields, obstacles) {
   const PhaseScope phase(Phase::io);
   write_mesh();
   write_xdmf();
 }
 
 FrameWriter FrameWriter::continue_from(const DistributedMesh& mesh, const std::string& path,
-                                       const FrameFields& fields, double time) {
-  if (!exists(mesh.comm, path)) return {mesh, path, fields};
+                                       const FrameFields& fields, double time, Obstacles obstacles) {
+  if (!exists(mesh.comm, path)) return {mesh, path, fields, obstacles};
   const PhaseScope phase(Phase::io);
   on_root(mesh.comm, [&] { require_run_of(mesh, path); });
-  FrameWriter writer(mesh, Hdf5File::open(mesh.comm, path, Hdf5File::Access::write), fields);
+  FrameWriter writer(mesh, Hdf5File::open(mesh.comm, path, Hdf5File::Access::write), fields, obstacles);
   for (const auto& name : writer.file_.names_in("/frames")) {
     const std::string group = "/frames/" + name;
     const auto written = writer.file_.attribute<double>(group, "time");
@@ -100,7 +103,8 @@ FrameWriter FrameWriter::continue_from(const DistributedMesh& mesh, const std::s
     writer.frames_.push_back(
         {group,
          written,
-         {has("velocity"), has("min_stretch"), has("inverted"), writer.file_.contains(run_layout::rank)}});
+         {has("velocity"), has("min_stretch"), has("inverted"), writer.file_.contains(run_layout::rank)},
+         writer.obstacles_.known(writer.file_, group)});
   }
   writer.write_ranks(false);
   writer.file_.flush();
@@ -119,7 +123,7 @@ void FrameWriter::reserve(std::int64_t bytes) const {
 void FrameWriter::write_mesh() {
   const auto cells = mesh_.total_cells;
   std::int64_t connectivity = mixed_length(blocks_) * 8 * (blocks_.size() > 1 ? 2 : 1);
-  reserve(mesh_.total_nodes * 24 + connectivity + cells * 8);
+  reserve(mesh_.total_nodes * 24 + connectivity + cells * 8 + obstacles_.bytes());
   file_.set_attribute("/", "format", run_layout::format);
   file_.set_attribute("/", "format_version", run_layout::format_version);
   file_.create_group("/mesh");
@@ -137,6 +141,7 @@ void FrameWriter::write_mesh() {
   for (const auto& list : mesh_.cells) regions.insert(regions.end(), list.global_ids.size(), list.region);
   write_cells(run_layout::region, regions);
   write_ranks(true);
+  obstacles_.begin(file_);
   file_.flush();
 }
 
@@ -211,7 +216,8 @@ void FrameWriter::write_stretches(const std::string& group, const FrameSource& s
 
 std::int64_t FrameWriter::frame_bytes() const {
   return mesh_.total_nodes * (fields_.velocity ? 48 : 24) +
-         mesh_.total_cells * ((fields_.min_stretch ? 8 : 0) + (fields_.inversion ? 1 : 0));
+         mesh_.total_cells * ((fields_.min_stretch ? 8 : 0) + (fields_.inversion ? 1 : 0)) +
+         obstacles_.bytes();
 }
 
 void FrameWriter::write(const FrameSource& source) {
@@ -224,8 +230,9 @@ void FrameWriter::write(const FrameSource& source) {
   write_nodes(group + "/positions", source.positions);
   if (fields_.velocity) write_nodes(group + "/velocity", source.velocities);
   if (fields_.min_stretch || fields_.inversion) write_stretches(group, source);
+  auto obstacles = obstacles_.write(file_, group);
   file_.flush();
-  frames_.push_back({group, source.time, fields_});
+  frames_.push_back({group, source.time, fields_, std::move(obstacles)});
   write_xdmf();
 }
 

@@ -5,6 +5,8 @@
 #include "evert/io/surface.hpp"
 
 #include "../mesh/base64.hpp"
+#include "html_numbers.hpp"
+#include "html_obstacles.hpp"
 #include "number_text.hpp"
 #include <algorithm>
 #include <array>
@@ -48,9 +50,10 @@ std::vector<std::size_t> evenly_spaced(std::size_t count, std::size_t shown) {
 /// Bytes of a frame in the page at most, in base64: four numbers of 16 bits a vertex, three an inverted cell.
 std::size_t page_bytes_a_frame(const Surface& surface) { return surface.nodes.size() * (8 + 6) * 4 / 3 + 64; }
 
-std::size_t frames_that_fit(const Surface& surface, std::size_t max_bytes) {
-  const auto fixed = view_page.size() + surface.triangles.size() * 12 * 4 / 3;
-  return max_bytes > fixed ? std::max<std::size_t>((max_bytes - fixed) / page_bytes_a_frame(surface), 1) : 1;
+std::size_t frames_that_fit(const Surface& surface, const ObstacleBytes& obstacles, std::size_t max_bytes) {
+  const auto fixed = view_page.size() + surface.triangles.size() * 12 * 4 / 3 + obstacles.fixed;
+  const auto each = page_bytes_a_frame(surface) + obstacles.a_frame;
+  return max_bytes > fixed ? std::max<std::size_t>((max_bytes - fixed) / each, 1) : 1;
 }
 
 Colouring colouring_of(const RunReader& run, std::span<const std::size_t> numbers) {
@@ -78,11 +81,6 @@ void require_finite(std::span<const Vec3d> positions, const std::string& where) 
     for (const double coordinate : position.components)
       if (!(std::abs(coordinate) < farthest))
         throw UserError(where + " has a node at " + shortest(coordinate) + " m, which cannot be shown");
-}
-
-/// The position with the axis that points up as its second.
-Vec3d upright(const Vec3d& position, std::size_t up) {
-  return {position[(up + 2) % 3], position[up], position[(up + 1) % 3]};
 }
 
 /// Centres of the cells with negative values; evenly thinned out to `most`.
@@ -144,12 +142,6 @@ bool stands_on_ground(const Bounds& bounds) {
 
 // --- numbers as the page reads them: little-endian, in base64
 
-template <class Unsigned>
-void append(std::string& bytes, Unsigned number) {
-  for (std::size_t i = 0; i < sizeof(Unsigned); ++i)
-    bytes.push_back(static_cast<char>(static_cast<unsigned char>(number >> (8 * i))));
-}
-
 constexpr double steps = 65535;
 
 std::uint16_t quantised(double coordinate, double lower, double upper) {
@@ -167,27 +159,27 @@ std::uint16_t quantised_stretch(double stretch) {
 
 void append(std::string& bytes, const Vec3d& position, const Bounds& bounds) {
   for (std::size_t c = 0; c < 3; ++c)
-    append(bytes, quantised(position[c], bounds.first[c], bounds.second[c]));
+    append_number(bytes, quantised(position[c], bounds.first[c], bounds.second[c]));
 }
 
-/// The vertices and, after a blank, the inverted cells.
-std::string frame_text(const ShownFrame& frame, const Bounds& bounds) {
+/// The vertices and, after blanks, the inverted cells and the points of the obstacles.
+std::string frame_text(const ShownFrame& frame, const Bounds& bounds, const std::string& obstacles) {
   std::string vertices;
   vertices.reserve(frame.positions.size() * 8);
   for (std::size_t v = 0; v < frame.positions.size(); ++v) {
     append(vertices, frame.positions[v], bounds);
-    append(vertices, frame.values.empty() ? std::uint16_t{0} : quantised_stretch(frame.values[v]));
+    append_number(vertices, frame.values.empty() ? std::uint16_t{0} : quantised_stretch(frame.values[v]));
   }
   std::string inverted;
   for (const auto& centre : frame.inverted) append(inverted, centre, bounds);
-  return to_base64(vertices) + ' ' + to_base64(inverted);
+  return to_base64(vertices) + ' ' + to_base64(inverted) + ' ' + obstacles;
 }
 
 std::string triangles_text(const Surface& surface) {
   std::string bytes;
   bytes.reserve(surface.triangles.size() * 12);
   for (const auto& triangle : surface.triangles)
-    for (const auto vertex : triangle) append(bytes, vertex);
+    for (const auto vertex : triangle) append_number(bytes, vertex);
   return to_base64(bytes);
 }
 
@@ -209,18 +201,20 @@ std::string_view name_of(Colouring colouring) {
 
 /// What the page knows besides the two tables of numbers. A frame is [number, time, inverted fraction].
 std::string facts(const RunReader& run, const Surface& surface, std::span<const ShownFrame> frames,
-                  const Bounds& bounds, Colouring colouring) {
+                  const Bounds& bounds, bool ground, Colouring colouring, const ShownObstacles& obstacles) {
   std::vector<JsonValue> list;
   for (const auto& frame : frames)
     list.push_back(JsonValue::list({frame.number, frame.time, frame.inverted_fraction}));
-  return JsonValue::object({{"nodes", run.node_count()},
-                            {"cells", run.cell_count()},
-                            {"vertices", surface.nodes.size()},
-                            {"lower", json(bounds.first)},
-                            {"upper", json(bounds.second)},
-                            {"ground", stands_on_ground(bounds) ? 1 : 0},
-                            {"colouring", name_of(colouring)},
-                            {"frames", JsonValue::list(list)}})
+  return JsonValue::object(
+             {{"nodes", run.node_count()},
+              {"cells", run.cell_count()},
+              {"vertices", surface.nodes.size()},
+              {"lower", json(bounds.first)},
+              {"upper", json(bounds.second)},
+              {"ground", ground ? 1 : 0},
+              {"colouring", name_of(colouring)},
+              {"obstacles", JsonValue::list({obstacles.point_counts.begin(), obstacles.point_counts.end()})},
+              {"frames", JsonValue::list(list)}})
       .text();
 }
 
@@ -269,20 +263,27 @@ HtmlView html_view(const RunReader& run, const HtmlViewOptions& options) {
                     std::to_string(options.max_triangles) + " triangles: it must be more");
 
   const auto wanted = std::min(run.frames().size(), options.max_frames);
-  const auto shown = std::min(wanted, frames_that_fit(surface, options.max_bytes));
+  const auto shown =
+      std::min(wanted, frames_that_fit(surface, page_bytes_of_obstacles(run), options.max_bytes));
   const auto numbers = evenly_spaced(run.frames().size(), shown);
   const auto colouring = colouring_of(run, numbers);
   std::vector<ShownFrame> frames;
   for (const auto number : numbers)
     frames.push_back(shown_frame(run, mesh, surface, number, colouring, options.up));
 
-  const auto bounds = bounds_of(frames);
+  const auto of_bodies = bounds_of(frames);
+  auto obstacles = shown_obstacles(run, numbers, options.up, of_bodies);
+  obstacles.corners.insert(obstacles.corners.end(), {of_bodies.first, of_bodies.second});
+  const auto bounds = bounds_of(obstacles.corners);
   std::string frame_lines;
-  for (const auto& frame : frames) frame_lines += frame_text(frame, bounds) + '\n';
-  const std::array<std::pair<std::string_view, std::string>, 4> values{
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    frame_lines += frame_text(frames[f], bounds, obstacles.points[f]) + '\n';
+  const bool ground = stands_on_ground(of_bodies);
+  const std::array<std::pair<std::string_view, std::string>, 5> values{
       {{"title", html_escaped(options.title)},
-       {"facts", facts(run, surface, frames, bounds, colouring)},
+       {"facts", facts(run, surface, frames, bounds, ground, colouring, obstacles)},
        {"triangles", triangles_text(surface)},
+       {"obstacles", obstacles.surfaces},
        {"frames", std::move(frame_lines)}}};
   return {filled(view_page, values), shown, surface.triangles.size(), whole.triangles.size(), shown < wanted};
 }

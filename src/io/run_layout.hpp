@@ -17,6 +17,16 @@ inline const std::string region = "/mesh/region";
 inline const std::string rank = "/mesh/rank";
 inline const std::string mixed = "/mesh/mixed";
 
+inline const std::string obstacles = "/obstacles";
+
+[[nodiscard]] inline std::string triangles_of(const std::string& obstacle) {
+  return obstacles + "/" + obstacle + "/triangles";
+}
+/// Not in every frame: where there is none, the last one before holds.
+[[nodiscard]] inline std::string points_in(const std::string& frame, const std::string& obstacle) {
+  return frame + "/obstacles/" + obstacle;
+}
+
 [[nodiscard]] inline std::string cells(CellType type) { return "/mesh/cells/" + std::string(name_of(type)); }
 
 /// "/frames/00000012": sorted by name is sorted by number.

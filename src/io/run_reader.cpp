@@ -4,6 +4,7 @@
 
 #include "run_layout.hpp"
 #include <algorithm>
+#include <limits>
 
 namespace evert {
 namespace {
@@ -114,13 +115,52 @@ std::string RunReader::table_of(std::size_t frame, const std::string& field) con
   return frames_[frame].group + "/" + field;
 }
 
+std::vector<Vec3d> RunReader::vectors(const std::string& table) const {
+  const auto shape = file_.shape_of(table);
+  if (shape.width != 3) refuse(file_.path(), "'" + table + "' does not have three values in a row");
+  const auto values = file_.read<double>(table, {0, shape.rows});
+  std::vector<Vec3d> result(static_cast<std::size_t>(shape.rows));
+  for (std::size_t i = 0; i < values.size(); ++i) result[i / 3][i % 3] = values[i];
+  return result;
+}
+
 std::vector<Vec3d> RunReader::node_vectors(const std::string& table) const {
   if (file_.shape_of(table) != TableShape{node_count_, 3})
     refuse(file_.path(), "'" + table + "' does not have three values for every node");
-  const auto values = file_.read<double>(table, {0, node_count_});
-  std::vector<Vec3d> vectors(static_cast<std::size_t>(node_count_));
-  for (std::size_t i = 0; i < values.size(); ++i) vectors[i / 3][i % 3] = values[i];
-  return vectors;
+  return vectors(table);
+}
+
+std::vector<RunObstacle> RunReader::obstacles() const {
+  std::vector<RunObstacle> all;
+  if (!file_.contains(run_layout::obstacles)) return all;
+  for (const auto& name : file_.names_in(run_layout::obstacles)) {
+    const auto table = run_layout::triangles_of(name);
+    const auto shape = file_.shape_of(table);
+    if (shape.width != 3) refuse(file_.path(), "'" + table + "' does not have three values in a row");
+    auto& obstacle = all.emplace_back(RunObstacle{name, {}});
+    obstacle.triangles.resize(static_cast<std::size_t>(shape.rows));
+    const auto corners = file_.read<std::int64_t>(table, {0, shape.rows});
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (corners[i] < 0 || corners[i] > std::numeric_limits<std::int32_t>::max())
+        refuse(file_.path(), "a triangle of '" + name + "' has a point that does not exist");
+      obstacle.triangles[i / 3][i % 3] = static_cast<std::uint32_t>(corners[i]);
+    }
+  }
+  return all;
+}
+
+std::vector<Vec3d> RunReader::obstacle_points(std::size_t frame, const RunObstacle& obstacle) const {
+  for (auto last = frame + 1; last-- > 0;) {  // where it stood still, the frame has no table
+    const auto table = run_layout::points_in(frames_.at(last).group, obstacle.name);
+    if (!file_.contains(table)) continue;
+    auto points = vectors(table);
+    for (const auto& triangle : obstacle.triangles)
+      for (const auto corner : triangle)
+        if (corner >= points.size())
+          refuse(file_.path(), "a triangle of '" + obstacle.name + "' has a point that does not exist");
+    return points;
+  }
+  refuse(file_.path(), "no frame says where '" + obstacle.name + "' is");
 }
 
 template <class T>

@@ -79,6 +79,14 @@ JsonValue final_state(const Measurements& m) {
                             {"inverted_points", m.inverted_points}});
 }
 
+JsonValue obstacles(const RunSummary& summary) {
+  std::vector<std::pair<std::string, JsonValue>> members;
+  for (const auto& [name, given] : summary.obstacles)
+    members.emplace_back(name, JsonValue::object({{"impulse", vector3(given.linear)},
+                                                  {"angular_impulse", vector3(given.angular)}}));
+  return JsonValue::object(members);
+}
+
 JsonValue shape_errors(const RunSummary& summary) {
   std::vector<std::pair<std::string, JsonValue>> members;
   for (const auto& [body, error] : summary.shape_errors) members.emplace_back(body, error);
@@ -115,6 +123,7 @@ void write_summary(MPI_Comm comm, const std::string& path, const RunSummary& sum
          {"max_inverted",
           JsonValue::object({{"points", summary.max_inverted_points}, {"time", summary.max_inverted_time}})},
          {"final", final_state(summary.final_state)},
+         {"obstacles", obstacles(summary)},
          {"shape_error", shape_errors(summary)},
          {"peak_memory_bytes", memory},
          {"cpu_level", summary.cpu_level},

@@ -62,12 +62,28 @@ class Writer {
   }
 
   void frame(const WrittenFrame& frame) {
-    out_ << "      <Grid Name=\"" << frame.group << "\" GridType=\"Uniform\">\n"
-         << "        <Time Value=\"" << shortest(frame.time) << "\"/>\n";
+    if (frame.obstacles.empty()) {
+      bodies(frame, frame.group, true);
+      return;
+    }
+    out_ << "      <Grid Name=\"" << frame.group
+         << "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n";
+    time(frame);
+    bodies(frame, "bodies", false);
+    for (const auto& shown : frame.obstacles) obstacle(shown);
+    out_ << "      </Grid>\n";
+  }
+
+ private:
+  void time(const WrittenFrame& frame) {
+    out_ << "        <Time Value=\"" << shortest(frame.time) << "\"/>\n";
+  }
+
+  void bodies(const WrittenFrame& frame, std::string_view name, bool timed) {
+    out_ << "      <Grid Name=\"" << name << "\" GridType=\"Uniform\">\n";
+    if (timed) time(frame);
     topology();
-    out_ << "        <Geometry GeometryType=\"XYZ\">\n";
-    item({frame.group + "/positions", nodes_, 3, "Float", 8});
-    out_ << "        </Geometry>\n";
+    places(frame.group + "/positions", nodes_);
     if (frame.fields.velocity)
       attribute("velocity", "Vector", "Node", {frame.group + "/velocity", nodes_, 3, "Float", 8});
     if (frame.fields.min_stretch) of_cells("min_stretch", frame.group + "/min_stretch", "Float", 8);
@@ -77,7 +93,22 @@ class Writer {
     out_ << "      </Grid>\n";
   }
 
- private:
+  void obstacle(const WrittenObstacle& obstacle) {
+    out_ << "      <Grid Name=\"" << escaped(obstacle.name) << "\" GridType=\"Uniform\">\n"
+         << "        <Topology TopologyType=\"Triangle\" NumberOfElements=\"" << obstacle.triangle_count
+         << "\">\n";
+    item({run_layout::triangles_of(obstacle.name), obstacle.triangle_count, 3, "Int", 8});
+    out_ << "        </Topology>\n";
+    places(obstacle.points, obstacle.point_count);
+    out_ << "      </Grid>\n";
+  }
+
+  void places(const std::string& path, GlobalIndex count) {
+    out_ << "        <Geometry GeometryType=\"XYZ\">\n";
+    item({path, count, 3, "Float", 8});
+    out_ << "        </Geometry>\n";
+  }
+
   void topology() {
     const bool mixed = blocks_.size() > 1;
     const auto type = blocks_.front().first;

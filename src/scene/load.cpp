@@ -76,6 +76,17 @@ void resolve_paths(SceneConfig& scene, const Value& root) {
     resolve_paths(obstacle.shape.solid, *root.find("obstacles")->find(obstacle.name), folder);
 }
 
+/// The same for the files of motions.
+void resolve_motion_paths(SceneConfig& scene, const Value& root) {
+  const auto folder = std::filesystem::path(scene.file).parent_path();
+  for (auto& obstacle : scene.obstacles) {
+    if (!obstacle.motion || obstacle.motion->file.empty()) continue;
+    auto& file = obstacle.motion->file;
+    const auto& written = *root.find("obstacles")->find(obstacle.name)->find("motion")->find("file");
+    if (!written.where.starts_with("-set ")) file = (folder / file).lexically_normal().string();
+  }
+}
+
 void resolve_constraints(SceneConfig& scene, const Value& root) {
   std::vector<std::string> names;
   for (const auto& body : scene.bodies) names.push_back(body.name);
@@ -108,6 +119,7 @@ SceneConfig parse_scene(std::string_view text, const std::string& file,
   auto scene = scene_table().read(root, "");
   scene.file = file;
   resolve_paths(scene, root);
+  resolve_motion_paths(scene, root);
   resolve_constraints(scene, root);
   resolve_events(scene, root);
   require_rest(scene, root);

@@ -2,6 +2,7 @@
 
 #include "evert/core/collective.hpp"
 
+#include "motion.hpp"
 #include "solid.hpp"
 #include <set>
 #include <string>
@@ -40,23 +41,32 @@ Surfaces read_obstacle_surfaces(MPI_Comm comm, const SceneConfig& scene) {
   return surfaces;
 }
 
-std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config, const Surfaces& surfaces) {
+/// `keys` of the file of its motion, where that has one.
+std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config, const Surfaces& surfaces,
+                                      const std::vector<PoseKey>& keys) {
   const auto& shape = config.shape;
-  RigidState start{.origin = shape.center, .velocity = config.velocity};
+  RigidState start{.origin = shape.center};
   if (shape.rotate) start.rotation = rotation_of(*shape.rotate);
-  return std::make_unique<Obstacle>(config.name, config.friction, make_solid(shape, surfaces),
-                                    std::make_unique<UniformMotion>(start));
+  auto solid = make_solid(shape, surfaces);
+  if (config.mass || config.density) {
+    auto body = rigid_body_of(config, *solid, start);
+    return std::make_unique<Obstacle>(config.name, config.friction, std::move(solid), std::move(body));
+  }
+  return std::make_unique<Obstacle>(config.name, config.friction, std::move(solid),
+                                    motion_of(config, start, keys));
 }
 
 }  // namespace
 
 std::vector<std::unique_ptr<Obstacle>> make_obstacles(MPI_Comm comm, const SceneConfig& scene) {
+  const auto keys = read_motions(comm, scene);
   const auto surfaces = read_obstacle_surfaces(comm, scene);
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   on_every_rank(comm, [&] {
-    for (const auto& config : scene.obstacles) {
+    for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+      const auto& config = scene.obstacles[o];
       try {
-        obstacles.push_back(obstacle_of(config, surfaces));
+        obstacles.push_back(obstacle_of(config, surfaces, keys[o]));
       } catch (const UserError& error) {
         throw UserError("obstacles." + config.name + ": " + error.what());
       }

@@ -14,6 +14,7 @@ namespace evert {
 [[nodiscard]] const schema::Table<FibreConfig>& fibre_table();
 [[nodiscard]] const schema::Table<RotationConfig>& rotation_table();
 [[nodiscard]] const schema::Table<ObstacleConfig>& obstacle_table();
+[[nodiscard]] const schema::Table<MotionConfig>& motion_table();
 [[nodiscard]] const schema::Table<ConstraintConfig>& constraint_table();
 [[nodiscard]] const schema::Table<EventConfig>& event_table();
 

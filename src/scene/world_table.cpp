@@ -77,6 +77,26 @@ Type<std::vector<VelocityKey>> velocity_over_time() {
           .write = [](const std::vector<VelocityKey>&) { return std::string(); }};
 }
 
+/// An obstacle either moves as the scene says, or has a mass.
+void finish_obstacle(ObstacleConfig& obstacle, const Value& map, const std::string& path) {
+  const auto exclude = [&](const char* one, const char* other, const std::string& advice) {
+    if (map.find(one) != nullptr && map.find(other) != nullptr)
+      fail(*map.find(other), join(path, other), std::string("and '") + one + "' exclude each other" + advice);
+  };
+  exclude("velocity", "motion", ": write 'motion: {velocity: ...}'");
+  exclude("density", "mass", "");
+  for (const char* mass : {"mass", "density"})
+    for (const char* motion : {"velocity", "motion"})
+      exclude(motion, mass, ": what has a mass moves by the forces on it, from 'initial_velocity' on");
+  const bool rigid_body = obstacle.mass || obstacle.density;
+  for (const char* mass : {"mass", "density"})
+    if (map.find(mass) != nullptr && std::holds_alternative<HalfSpaceShape>(obstacle.shape.solid))
+      fail(*map.find(mass), join(path, mass), "is not possible: a half_space goes on for ever");
+  for (const char* key : {"initial_velocity", "initial_angular_velocity"})
+    if (map.find(key) != nullptr && !rigid_body)
+      fail(*map.find(key), join(path, key), "goes with 'mass' or 'density' only");
+}
+
 void finish_constraint(ConstraintConfig& constraint, const Value& map, const std::string& path) {
   const auto* fixed = map.find("fixed");
   if (fixed != nullptr && !constraint.fixed)
@@ -99,7 +119,18 @@ const Table<ObstacleConfig>& obstacle_table() {
     add_shape_keys(keys);
     return keys
         .optional("friction", &ObstacleConfig::friction, friction_type(), "0.3", "Coulomb coefficient.")
-        .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.");
+        .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.")
+        .optional("motion", &ObstacleConfig::motion, table_of(motion_table()),
+                  "{angular_velocity: [0, 0, 2]}", "Any other motion, in the place of velocity.")
+        .either("mass", &ObstacleConfig::mass, number("kg", above(0)), "5",
+                "With a mass it is a rigid body: gravity, nodes and other obstacles move it.")
+        .either("density", &ObstacleConfig::density, number("kg/m^3", above(0)), "1000",
+                "Instead of mass, times the volume of the shape.")
+        .optional("initial_velocity", &ObstacleConfig::initial_velocity, vector3("m/s"), "[0, -1, 0]",
+                  "Of a rigid body with mass, of its centre of mass.")
+        .optional("initial_angular_velocity", &ObstacleConfig::initial_angular_velocity, vector3("rad/s"),
+                  "[0, 0, 5]", "Of a rigid body with mass.")
+        .then(finish_obstacle);
   }();
   return table;
 }

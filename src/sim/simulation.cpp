@@ -109,20 +109,26 @@ Motion motion_of_consistent(const System& system) {
   return motion;
 }
 
+std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t axis) {
+  return "obstacles." + obstacle.name() + "." + what + "_" + "xyz"[axis];
+}
+
 }  // namespace
 
 Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
     : mesh_(std::move(mesh)),
       elastic_(mesh_, definition.properties, possible_mass(definition)),
       collisions_(std::move(definition.obstacles), elastic_.masses()),
+      rigid_(collisions_.obstacles()),
       prescribed_(std::move(definition.prescribed)),
-      system_(mesh_, elastic_, collisions_, prescribed_, definition.gravity,
+      system_(mesh_, elastic_, collisions_, rigid_, prescribed_, definition.gravity,
               std::move(definition.body_force)),
       integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
       activations_(std::move(definition.activations)),
-      events_(std::move(definition.events)) {
+      events_(std::move(definition.events)),
+      obstacle_impulses_before_(system_.obstacle_impulses.size()) {
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
   forces_stale_ = true;
@@ -162,6 +168,12 @@ bool Simulation::agree_on_state() {
     for (std::size_t i = 0; i < x.size(); i += 3)
       counts[0] += sound(x.subspan(i, 3), v.subspan(i, 3)) ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, counts.data(), 2, MPI_INT64_T, MPI_SUM, mesh_.comm);
+  for (const auto number : rigid_.bodies()) {  // every rank has all of them
+    const auto& body = rigid_.body(number);
+    if (!sound(body.center().components, body.velocity().components) ||
+        !all_within(body.angular_velocity().components, light_speed))
+      give_up("the motion of '" + obstacles()[number]->name() + "' has blown up");
+  }
   if (counts[0] > 0)
     give_up("the motion has blown up, " + std::to_string(counts[0]) + " of " +
             std::to_string(mesh_.total_nodes) + " nodes are faster than light or not finite");
@@ -250,13 +262,23 @@ GlobalIndex Simulation::inverted_points() const {
 }
 
 Measurements Simulation::measure() const {
-  const auto [kinetic, momentum, angular] =
+  auto [kinetic, momentum, angular] =
       elastic_.consistent_mass() == nullptr ? motion_of_lumped(system_) : motion_of_consistent(system_);
   const auto mass = elastic_.mass_row_sums();
   double potential = 0;
   for (std::size_t i = 0; i < mass.size(); ++i)
     potential -=
         mass[i] * dot(system_.gravity, node_value(system_.x.owned(), static_cast<std::ptrdiff_t>(i)));
+  if (rank_of(mesh_.comm) == 0) {  // every rank has all rigid bodies
+    for (const auto number : rigid_.bodies()) {
+      const auto& body = rigid_.body(number);
+      const auto of_body = body.mass().mass * body.velocity();
+      kinetic += body.kinetic_energy();
+      potential -= body.mass().mass * dot(system_.gravity, body.center());
+      momentum += of_body;
+      angular += cross(body.center(), of_body) + body.angular_momentum();
+    }
+  }
   std::array<double, 9> sums{kinetic,     elastic_.energy(system_.x),
                              potential,   momentum[0],
                              momentum[1], momentum[2],
@@ -273,6 +295,23 @@ Measurements Simulation::measure() const {
   all.constraint_impulse = impulses_before_.constraint + since_restart.constraint;
   all.damping_impulse = impulses_before_.damping + since_restart.damping;
   all.inverted_points = inverted_points();
+  return all;
+}
+
+std::vector<ObstacleImpulse> Simulation::obstacle_impulses() const {
+  const auto& mine = system_.obstacle_impulses;
+  std::vector<double> numbers;
+  for (const auto& [linear, angular] : mine)
+    for (const auto* vector : {&linear, &angular})
+      numbers.insert(numbers.end(), vector->components.begin(), vector->components.end());
+  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, MPI_SUM,
+                mesh_.comm);
+  auto all = obstacle_impulses_before_;
+  for (std::size_t o = 0; o < all.size(); ++o)
+    for (std::size_t k = 0; k < 3; ++k) {
+      all[o].linear[k] += numbers[6 * o + k];
+      all[o].angular[k] += numbers[6 * o + 3 + k];
+    }
   return all;
 }
 
@@ -309,6 +348,14 @@ std::vector<StateScalar> Simulation::state_scalars() const {
   const auto before = as_array(impulses_before_);
   for (std::size_t i = 0; i < impulses.size(); ++i)
     scalars.emplace_back(impulse_names[i], before[i] + impulses[i]);
+  const auto given = obstacle_impulses();
+  for (std::size_t o = 0; o < given.size(); ++o)
+    for (std::size_t k = 0; k < 3; ++k) {
+      scalars.emplace_back(impulse_name(*obstacles()[o], "impulse", k), given[o].linear[k]);
+      scalars.emplace_back(impulse_name(*obstacles()[o], "angular_impulse", k), given[o].angular[k]);
+    }
+  const auto bodies = rigid_.state();
+  scalars.insert(scalars.end(), bodies.begin(), bodies.end());
   return scalars;
 }
 
@@ -323,6 +370,12 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   const TimeStepControl::State control{value("stable_time_step"), value("stable_time_step_age")};
   std::array<double, 12> impulses{};
   for (std::size_t i = 0; i < impulses.size(); ++i) impulses[i] = value(impulse_names[i]);
+  auto given = obstacle_impulses_before_;
+  for (std::size_t o = 0; o < given.size(); ++o)
+    for (std::size_t k = 0; k < 3; ++k) {
+      given[o].linear[k] = value(impulse_name(*obstacles()[o], "impulse", k));
+      given[o].angular[k] = value(impulse_name(*obstacles()[o], "angular_impulse", k));
+    }
   const auto events_done = static_cast<std::size_t>(value("events_done"));
   steps_ = static_cast<std::int64_t>(value("steps"));
   system_.time = value("time");
@@ -335,6 +388,10 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   replace(system_.v_change, nodes.velocity_changes);
   impulses_before_ = as_impulses(impulses);
   system_.impulses = {};
+  obstacle_impulses_before_ = std::move(given);
+  std::fill(system_.obstacle_impulses.begin(), system_.obstacle_impulses.end(), ObstacleImpulse{});
+  for (const auto& obstacle : obstacles()) obstacle->move_to({.end = system_.time, .dt = 1});
+  rigid_.restore(value, system_.time);
   forces_stale_ = true;
   while (events_done_ < std::min(events_done, events_.size())) events_[events_done_++].apply(*this);
   refresh_forces();

@@ -40,6 +40,8 @@ struct Case {
 [[nodiscard]] std::vector<Case> quasistatic_cases();
 [[nodiscard]] std::vector<Case> mass_cases();
 [[nodiscard]] std::vector<Case> shape_cases();
+[[nodiscard]] std::vector<Case> motion_cases();
+[[nodiscard]] std::vector<Case> rigid_cases();
 
 // --- good input to spoil
 

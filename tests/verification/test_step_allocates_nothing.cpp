@@ -119,6 +119,14 @@ TEST(Step, AllocatesAndAssemblesNothingWithConsistentMasses) {
   }
 }
 
+TEST(Step, AllocatesNothingWhileARigidBodyRolls) {
+  const auto counts = counts_of_steps(
+      {}, {"obstacles={ground: {shape: half_space, normal: [0, 1, 0], friction: 0.1}, "
+           "wall: {shape: half_space, normal: [1, 0, 0], point: [0.101, 0, 0], friction: 0.2}, "
+           "ball: {shape: sphere, center: [0.2, 0.298, 0.1], radius: 0.1, mass: 2, friction: 0.3}}"});
+  EXPECT_EQ(counts.allocations, 0);
+}
+
 TEST(Step, IsSeenToAssembleWhereToldTo) {
   check(PetscLogDefaultBegin());
   EXPECT_GT(counts_of_steps({"-damping_mat_type baij"}).assemblies, 0);

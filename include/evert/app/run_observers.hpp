@@ -60,6 +60,18 @@ class EnergyObserver final : public Observer {
   double interval_;
 };
 
+/// Rows of what obstacles do, at the times of the energy log.
+class ObstacleObserver final : public Observer {
+ public:
+  ObstacleObserver(ObstacleLog log, double interval) : log_(std::move(log)), interval_(interval) {}
+  [[nodiscard]] double next_stop(double time) const override;
+  void observe(Simulation& simulation, const StepReport& report) override;
+
+ private:
+  ObstacleLog log_;
+  double interval_;
+};
+
 /// Checkpoints by simulated and by wall time, and one when the run ends early.
 class CheckpointObserver final : public Observer {
  public:

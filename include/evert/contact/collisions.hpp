@@ -58,7 +58,12 @@ class Collisions {
   /// changes of them is taken off `reaction`. constraints() then holds for a solve with that b.
   void slide(std::span<const double> v, std::span<double> reaction);
 
-  /// After the last solve: friction stops a node and never turns it round.
+  /// The velocity of `obstacle` (its number) has changed since it was that of `before`, its place has not:
+  /// from now on nodes on it are held to the new one.
+  void follow(std::size_t obstacle, const RigidState& before);
+
+  /// After the last solve: friction stops a node and never turns it round. Not on bodies with a mass, which
+  /// have got their impulses by then.
   void stop_reversed(std::span<double> v);
 
   /// After that: adds to the impulses of the impacts what friction, stops and the last solve gave the nodes.
@@ -86,6 +91,7 @@ class Collisions {
     Vec3d position{};                          // on the surface [m]
     Mat3d tangent{};                           // P, off the normals of all bodies
     Vec3d surface_velocity{};                  // the mean, at the end of the step [m/s]
+    bool yields = false;                       // one of the bodies has a mass and gives way
     bool sticks = false;                       // friction holds it
     bool stopped = false;                      // again, after it has slid in this step
     Vec3d sliding{};                           // unit direction, where slide() found it sliding

@@ -1,5 +1,5 @@
 #pragma once
-#include "evert/contact/rigid_motion.hpp"
+#include "evert/contact/rigid_body.hpp"
 #include "evert/shapes/implicit_surface.hpp"
 
 #include <memory>
@@ -19,6 +19,9 @@ class Obstacle {
  public:
   Obstacle(std::string name, double friction, std::unique_ptr<ImplicitSurface> surface,
            std::unique_ptr<RigidMotion> motion);
+  /// One that the nodes and other obstacles move.
+  Obstacle(std::string name, double friction, std::unique_ptr<ImplicitSurface> surface,
+           std::unique_ptr<RigidBody> body);
 
   /// Takes the body to the end of `step`. What follows speaks of there.
   void move_to(const StepInterval& step);
@@ -44,6 +47,9 @@ class Obstacle {
   [[nodiscard]] const RigidState& before() const { return before_; }
   [[nodiscard]] const ImplicitSurface& surface() const { return *surface_; }
 
+  /// Null where the motion is prescribed.
+  [[nodiscard]] RigidBody* body() const { return body_; }
+
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Coulomb coefficient, ≥ 0.
   [[nodiscard]] double friction() const { return friction_; }
@@ -54,6 +60,7 @@ class Obstacle {
   double friction_;
   std::unique_ptr<ImplicitSurface> surface_;
   std::unique_ptr<RigidMotion> motion_;
+  RigidBody* body_ = nullptr;  // motion_, where it is one
   StepInterval step_;
   RigidState before_, now_;
   Box3 bounds_;

@@ -26,18 +26,46 @@ class RigidMotion {
   [[nodiscard]] virtual RigidState at(double t) const = 0;
 };
 
-/// Constant velocities: `start` is the state at t = 0, whose origin goes on in a straight line while the body
-/// turns about it.
+/// Constant velocities: `start` is the state at t = 0. The point `about`, fixed to the body, goes on in a
+/// straight line while the body turns about it.
 class UniformMotion final : public RigidMotion {
  public:
-  explicit UniformMotion(const RigidState& start) : start_(start) {}
+  UniformMotion(const RigidState& start, const Vec3d& about) : start_(start), about_(about) {}
+  /// About its origin.
+  explicit UniformMotion(const RigidState& start) : UniformMotion(start, start.origin) {}
   [[nodiscard]] RigidState at(double t) const override;
 
  private:
   RigidState start_;
+  Vec3d about_;
+};
+
+/// To and fro: the place `start` displaced by `amplitude` [m] and turned by the vector `angle` [rad] about
+/// the point `about`, which is displaced with it, both times sin(2π `frequency` t + `phase`).
+class Oscillation final : public RigidMotion {
+ public:
+  Oscillation(const RigidState& start, const Vec3d& about, const Vec3d& amplitude, const Vec3d& angle,
+              double frequency, double phase)
+      : start_(start),
+        about_(about),
+        amplitude_(amplitude),
+        angle_(angle),
+        frequency_(frequency),
+        phase_(phase) {}
+  [[nodiscard]] RigidState at(double t) const override;
+
+ private:
+  RigidState start_;
+  Vec3d about_, amplitude_, angle_;
+  double frequency_, phase_;  // [Hz], [rad]
 };
 
 /// The rotation by the angle |v| about the direction v, by the right-hand rule.
 [[nodiscard]] Mat3d rotation_by(const Vec3d& v);
+
+/// The place `start` after a rotation about the point `about` and a translation: those of `displacement`, as
+/// its rotation and origin, whose velocities are the rates of both.
+[[nodiscard]] RigidState displaced(const RigidState& start, const Vec3d& about,
+                                   const RigidState& displacement);
 
 }  // namespace evert

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/contact/collisions.hpp"
 #include "evert/contact/prescribed_motion.hpp"
+#include "evert/contact/rigid_dynamics.hpp"
 #include "evert/forces/body_force.hpp"
 #include "evert/forces/elastic_forces.hpp"
 
@@ -15,6 +16,7 @@ struct System {
   const DistributedMesh& mesh;
   ElasticForces& elastic;
   Collisions& collisions;
+  RigidDynamics& rigid;
   PrescribedMotion& prescribed;
   Vec3d gravity;         ///< [m/s^2]
   BodyForce body_force;  ///< besides gravity; empty where there is none
@@ -33,8 +35,13 @@ struct System {
     Vec3d damping{};  ///< of the damping proportional to mass; the other has no resultant
   } impulses;
 
+  /// What each obstacle gave to nodes and rigid bodies since the start, this rank's share; the angular part
+  /// about the origin of its frame at the time.
+  std::vector<ObstacleImpulse> obstacle_impulses;
+
   System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
-         PrescribedMotion& prescribed_motion, const Vec3d& gravitation, BodyForce force = {});
+         RigidDynamics& rigid_dynamics, PrescribedMotion& prescribed_motion, const Vec3d& gravitation,
+         BodyForce force = {});
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 

@@ -6,25 +6,30 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace evert {
 
-/// The log of energies and momenta: one row of comma-separated values for each call, headed by names and
-/// units, on the disk when the call returns. Every call is collective; what cannot be written is a UserError
-/// on all ranks.
-class EnergyLog {
+/// A file of comma-separated values: one row for each call, headed by names and units, on the disk when the
+/// call returns. The first column is the time [s], the second the step. Every call is collective; what cannot
+/// be written is a UserError on all ranks.
+class CsvLog {
  public:
-  /// Begins a new file.
-  EnergyLog(MPI_Comm comm, const std::string& path);
+  /// Begins a new file. `columns`: the names of those after the second.
+  CsvLog(MPI_Comm comm, const std::string& path, const std::vector<std::string>& columns);
   /// Goes on with the log of an earlier run, without its rows after `time` [s]. Throws UserError when the
   /// file has other columns; begins a new one where there is none.
-  [[nodiscard]] static EnergyLog continue_from(MPI_Comm comm, const std::string& path, double time);
+  [[nodiscard]] static CsvLog continue_from(MPI_Comm comm, const std::string& path,
+                                            const std::vector<std::string>& columns, double time);
 
-  void write(std::int64_t step, double time, const Measurements& measurements);
+  /// The values of rank 0 count.
+  void write(std::int64_t step, double time, std::span<const double> values);
 
  private:
-  EnergyLog(MPI_Comm comm, const std::string& path, const std::string& begin);
+  CsvLog(MPI_Comm comm, const std::string& path, const std::string& begin);
   void append(const std::string& text);
 
   struct Close {
@@ -33,6 +38,37 @@ class EnergyLog {
   MPI_Comm comm_;
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;  // on rank 0
+};
+
+/// The log of energies, momenta and impulses. Collective, as CsvLog.
+class EnergyLog {
+ public:
+  EnergyLog(MPI_Comm comm, const std::string& path);
+  [[nodiscard]] static EnergyLog continue_from(MPI_Comm comm, const std::string& path, double time);
+  void write(std::int64_t step, double time, const Measurements& measurements);
+
+ private:
+  explicit EnergyLog(CsvLog log) : log_(std::move(log)) {}
+  CsvLog log_;
+};
+
+/// What each obstacle gave to nodes and rigid bodies, and where it is. Collective, as CsvLog.
+class ObstacleLog {
+ public:
+  using Obstacles = std::span<const std::unique_ptr<Obstacle>>;
+  ObstacleLog(MPI_Comm comm, const std::string& path, Obstacles obstacles);
+  [[nodiscard]] static ObstacleLog continue_from(MPI_Comm comm, const std::string& path, Obstacles obstacles,
+                                                 double time);
+  /// `impulses` since the start of the run. Forces are their change since the last call, per time.
+  void write(std::int64_t step, double time, Obstacles obstacles, std::span<const ObstacleImpulse> impulses);
+  /// Where a restarted run begins: what the force of the first row counts from. Not collective.
+  void begin_at(double time, std::span<const ObstacleImpulse> impulses);
+
+ private:
+  explicit ObstacleLog(CsvLog log) : log_(std::move(log)) {}
+  CsvLog log_;
+  double last_time_ = 0;  // [s]
+  std::vector<ObstacleImpulse> last_;
 };
 
 }  // namespace evert

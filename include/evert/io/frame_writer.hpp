@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/io/hdf5_file.hpp"
 #include "evert/io/natural_order.hpp"
+#include "evert/io/obstacle_frames.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 ///   /mesh/region, /mesh/rank [cells]      /mesh/mixed: all cells as XDMF wants them, with several types only
 ///   /frames/<number>/positions [nodes, 3] [m], velocity [nodes, 3] [m/s], min_stretch [cells] [-],
 ///   inverted [cells] 0 or 1; attributes time [s] and step
+/// and the surfaces of the obstacles, as obstacle_frames.hpp says.
 namespace evert {
 
 class Simulation;
@@ -46,6 +48,7 @@ struct WrittenFrame {
   std::string group;
   double time = 0;  ///< [s]
   FrameFields fields;
+  std::vector<WrittenObstacle> obstacles{};
 };
 
 /// Writes frames together with all ranks. After each frame both files are complete on disk: a run that dies,
@@ -53,12 +56,15 @@ struct WrittenFrame {
 /// written is a UserError on all ranks.
 class FrameWriter {
  public:
-  /// Begins a new file at `path`, which ends in .h5. `mesh` must outlive the writer.
-  FrameWriter(const DistributedMesh& mesh, const std::string& path, const FrameFields& fields);
+  using Obstacles = std::span<const std::unique_ptr<Obstacle>>;
+  /// Begins a new file at `path`, which ends in .h5. `mesh` and `obstacles` must outlive the writer.
+  FrameWriter(const DistributedMesh& mesh, const std::string& path, const FrameFields& fields,
+              Obstacles obstacles = {});
   /// Goes on with the file of an earlier run of the same mesh, without its frames after `time` [s]; begins a
   /// new one where there is none.
   [[nodiscard]] static FrameWriter continue_from(const DistributedMesh& mesh, const std::string& path,
-                                                 const FrameFields& fields, double time);
+                                                 const FrameFields& fields, double time,
+                                                 Obstacles obstacles = {});
 
   void write(const FrameSource& source);
   [[nodiscard]] std::span<const WrittenFrame> frames() const { return frames_; }
@@ -66,7 +72,7 @@ class FrameWriter {
   [[nodiscard]] std::string xdmf_path() const;
 
  private:
-  FrameWriter(const DistributedMesh& mesh, Hdf5File file, const FrameFields& fields);
+  FrameWriter(const DistributedMesh& mesh, Hdf5File file, const FrameFields& fields, Obstacles obstacles);
   void write_mesh();
   void write_connectivity();
   void write_ranks(bool anew);
@@ -83,6 +89,7 @@ class FrameWriter {
   NaturalOrder nodes_;
   NaturalOrder cells_;
   std::vector<std::pair<CellType, GlobalIndex>> blocks_;  // types present and their cells on all ranks
+  ObstacleFrames obstacles_;
   Hdf5File file_;
   std::vector<WrittenFrame> frames_;
 };

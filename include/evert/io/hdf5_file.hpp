@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
 #include "evert/core/index.hpp"
 
@@ -103,6 +104,8 @@ class Hdf5File {
   void flush();
   void close();
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// Not collective: of this process among those that share the file.
+  [[nodiscard]] int rank() const { return rank_of(comm_); }
 
  private:
   Hdf5File(MPI_Comm comm, std::string path);

@@ -2,6 +2,7 @@
 #include "evert/io/hdf5_file.hpp"
 #include "evert/mesh/mesh.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,6 +16,12 @@ struct RunFrame {
   std::string group;
   double time = 0;  ///< [s]
   std::int64_t step = 0;
+};
+
+/// A rigid obstacle of a run.
+struct RunObstacle {
+  std::string name;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of its points, counter-clockwise from outside
 };
 
 /// An open run file. Not collective. Everything throws UserError when the file is missing, damaged, of
@@ -41,6 +48,10 @@ class RunReader {
   [[nodiscard]] std::vector<double> min_stretch(std::size_t frame) const;  ///< [-], negative where inverted
   [[nodiscard]] std::vector<std::uint8_t> inverted(std::size_t frame) const;
 
+  [[nodiscard]] std::vector<RunObstacle> obstacles() const;
+  /// Where the points of an obstacle are in a frame [m].
+  [[nodiscard]] std::vector<Vec3d> obstacle_points(std::size_t frame, const RunObstacle& obstacle) const;
+
   /// Whether a frame has "velocity", "min_stretch" or "inverted".
   [[nodiscard]] bool has(std::size_t frame, const std::string& field) const;
 
@@ -49,6 +60,7 @@ class RunReader {
   void list_cells();
   void list_frames();
   [[nodiscard]] std::string table_of(std::size_t frame, const std::string& field) const;
+  [[nodiscard]] std::vector<Vec3d> vectors(const std::string& table) const;
   [[nodiscard]] std::vector<Vec3d> node_vectors(const std::string& table) const;
   template <class T>
   [[nodiscard]] std::vector<T> cell_values(const std::string& table) const;

@@ -29,6 +29,7 @@ struct RunSummary {
   GlobalIndex quadrature_points = 0;
   Measurements final_state;
   std::vector<std::pair<std::string, double>> shape_errors;  ///< per body: rms distance to its rest shape [m]
+  std::vector<std::pair<std::string, ObstacleImpulse>> obstacles;  ///< what each gave, since the start
   std::string cpu_level;  ///< instruction set of the kernels: x86-64-v2, -v3 or -v4
 };
 

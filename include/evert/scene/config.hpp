@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/contact/keyframed_motion.hpp"
 #include "evert/core/number_array.hpp"
 #include "evert/forces/mass_form.hpp"
 #include "evert/integrators/method.hpp"
@@ -172,11 +173,30 @@ struct BodyConfig {
 
 // --- obstacles and constraints
 
+/// How an obstacle moves from the place that its shape has at t = 0: steadily, by a table, or to and fro.
+struct MotionConfig {
+  std::optional<Vec3d> about;      ///< [m] the point that it turns about; empty: the middle of the shape
+  Vec3d velocity{};                ///< [m/s] of that point
+  Vec3d angular_velocity{};        ///< [rad/s]
+  std::vector<PoseKey> keyframes;  ///< displacements; empty: none, or those of the file
+  std::string file;                ///< with them; relative to the scene file; resolved here
+  Vec3d amplitude{};               ///< [m] of an oscillation
+  Vec3d angle{};                   ///< [rad] of an oscillation, along its axis
+  double frequency = 0;            ///< [Hz] of an oscillation; 0: there is none
+  double phase = 0;                ///< [rad]
+};
+
 struct ObstacleConfig {
   std::string name;
   ShapeConfig shape;    ///< at t = 0
   double friction = 0;  ///< [-] Coulomb coefficient ≥ 0
-  Vec3d velocity{};     ///< [m/s] constant
+  Vec3d velocity{};     ///< [m/s] constant; not with motion
+  std::optional<MotionConfig> motion;
+  // Of a rigid body that moves by the forces on it, which has exactly one of mass and density:
+  std::optional<double> mass;        ///< [kg] > 0
+  std::optional<double> density;     ///< [kg/m^3] > 0
+  Vec3d initial_velocity{};          ///< [m/s] of its centre of mass
+  Vec3d initial_angular_velocity{};  ///< [rad/s]
 };
 
 /// Nodes whose position at rest, after the body's transform, lies inside (or on) the region.

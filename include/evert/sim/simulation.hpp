@@ -13,17 +13,17 @@
 
 namespace evert {
 
-/// Sums over all ranks at the present state, SI units.
+/// Sums over all ranks at the present state, SI units; rigid bodies with a mass count like the others.
 struct Measurements {
   double kinetic_energy = 0;
   double elastic_energy = 0;
   double gravitational_energy = 0;
   Vec3d momentum{};
-  Vec3d angular_momentum{};    ///< about the origin
-  Vec3d gravity_impulse{};     ///< accumulated since the start [N s]
-  Vec3d contact_impulse{};     ///< from obstacles, normal and friction, accumulated since the start [N s]
-  Vec3d constraint_impulse{};  ///< from fixed and scripted nodes, accumulated since the start [N s]
-  Vec3d damping_impulse{};     ///< of mass-proportional damping, accumulated since the start [N s]
+  Vec3d angular_momentum{};         ///< about the origin
+  Vec3d gravity_impulse{};          ///< accumulated since the start [N s]
+  Vec3d contact_impulse{};          ///< from obstacles without a mass, accumulated since the start [N s]
+  Vec3d constraint_impulse{};       ///< from fixed and scripted nodes, accumulated since the start [N s]
+  Vec3d damping_impulse{};          ///< of mass-proportional damping, accumulated since the start [N s]
   GlobalIndex inverted_points = 0;  ///< quadrature points with det F < 0; a tet4 has one
 };
 
@@ -83,6 +83,13 @@ class Simulation {
   /// Quadrature points with det F < 0, over all ranks.
   [[nodiscard]] GlobalIndex inverted_points() const;
 
+  /// Not collective.
+  [[nodiscard]] std::span<const std::unique_ptr<Obstacle>> obstacles() const {
+    return collisions_.obstacles();
+  }
+  /// What each obstacle gave to nodes and to rigid bodies since the start, summed over all ranks.
+  [[nodiscard]] std::vector<ObstacleImpulse> obstacle_impulses() const;
+
   // What events may change. Not collective; the forces follow before the next step.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
   void set_gravity(const Vec3d& gravity);
@@ -114,6 +121,7 @@ class Simulation {
   DistributedMesh mesh_;
   ElasticForces elastic_;
   Collisions collisions_;
+  RigidDynamics rigid_;
   PrescribedMotion prescribed_;
   System system_;
   Integrator integrator_;
@@ -126,6 +134,7 @@ class Simulation {
   bool forces_stale_ = false;
   bool stop_requested_ = false;
   System::Impulses impulses_before_{};  // of all ranks, before a restart
+  std::vector<ObstacleImpulse> obstacle_impulses_before_;
 };
 
 }  // namespace evert

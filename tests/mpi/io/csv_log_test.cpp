@@ -92,8 +92,27 @@ TEST(EnergyLog, DoesNotContinueOtherFiles) {
   if (rank_of(world) == 0) std::ofstream(path) << "a,b,c\n1,2,3\n";
   MPI_Barrier(world);
   EXPECT_EQ(test::user_error_of([&] { static_cast<void>(EnergyLog::continue_from(world, path, 1)); }),
-            "cannot continue '" + path + "': it is not an energy log with the columns of this evert");
+            "cannot continue '" + path + "': it is not a log with the columns of this evert");
   EXPECT_EQ(lines_of(path).size(), 2U);
+}
+
+TEST(ObstacleLog, GivesImpulsesAndTheMeanForceSinceTheRowBefore) {
+  const test::Scratch scratch;
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
+  obstacles.push_back(std::make_unique<Obstacle>(
+      "belt", 0.1, std::make_unique<HalfSpace>(Vec3d{}, Vec3d{0, 1, 0}),
+      std::make_unique<UniformMotion>(RigidState{.origin = {5, 0, 0}, .velocity = {1, 2, 3}})));
+  ObstacleLog log(world, scratch / "obstacles.csv", obstacles);
+  log.write(0, 0, obstacles, std::vector<ObstacleImpulse>{{}});
+  log.write(7, 0.5, obstacles, std::vector<ObstacleImpulse>{{{1, 2, 3}, {4, 5, 6}}});
+  const auto lines = lines_of(scratch / "obstacles.csv");
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_TRUE(lines[0].starts_with("time [s],step,belt.impulse_x [N s],belt.impulse_y [N s],"));
+  EXPECT_EQ(lines[2], "0.5,7,1,2,3,4,5,6,2,4,6,5,0,0,1,2,3,0,0,0");
+  auto again = ObstacleLog::continue_from(world, scratch / "obstacles.csv", obstacles, 0);
+  again.begin_at(0, std::vector<ObstacleImpulse>{{}});
+  again.write(3, 0.25, obstacles, std::vector<ObstacleImpulse>{{{1, 0, 0}, {}}});
+  EXPECT_TRUE(lines_of(scratch / "obstacles.csv")[2].starts_with("0.25,3,1,0,0,0,0,0,4,0,0,"));
 }
 
 TEST(EnergyLog, WhatCannotBeWrittenIsAnErrorOnEveryRank) {

@@ -167,6 +167,46 @@ TEST(FrameWriter, ContinuesARunWithoutItsLaterFrames) {
   if (rank_of(world) == 0) expect_frames(RunReader(scratch / "run.h5"), 4, 0.25);
 }
 
+std::vector<std::unique_ptr<Obstacle>> moving_and_standing() {
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
+  obstacles.push_back(std::make_unique<Obstacle>(
+      "ball", 0.1, std::make_unique<Sphere>(0.5),
+      std::make_unique<UniformMotion>(RigidState{.origin = {0, 2, 0}, .velocity = {1, 0, 0}})));
+  obstacles.push_back(std::make_unique<Obstacle>("ground", 0.1,
+                                                 std::make_unique<HalfSpace>(Vec3d{}, Vec3d{0, 1, 0}),
+                                                 std::make_unique<UniformMotion>(RigidState{})));
+  return obstacles;
+}
+
+TEST(FrameWriter, WritesWhereObstaclesAreWhenTheyHaveMoved) {
+  const test::Scratch scratch;
+  Motion motion(test::tet_cube(2));
+  const auto obstacles = moving_and_standing();
+  const auto write = [&](FrameWriter writer, double begin) {
+    for (double time = begin; time < begin + 0.7; time += 0.25) {
+      for (const auto& obstacle : obstacles) obstacle->move_to({.end = time, .dt = 0.25});
+      writer.write(motion.at(time));
+    }
+  };
+  write(FrameWriter(motion.mesh(), scratch / "run.h5", {}, obstacles), 0);
+  write(FrameWriter::continue_from(motion.mesh(), scratch / "run.h5", {}, 0.5, obstacles), 0.75);
+  if (rank_of(world) != 0) return;
+  const RunReader run(scratch / "run.h5");
+  ASSERT_EQ(run.frames().size(), 6U);
+  const auto shown = run.obstacles();
+  ASSERT_EQ(shown.size(), 2U);
+  EXPECT_EQ(shown[0].name, "ball");
+  EXPECT_GT(shown[0].triangles.size(), 100U);
+  for (std::size_t frame = 0; frame < 6; ++frame) {
+    for (const auto& point : run.obstacle_points(frame, shown[0]))
+      EXPECT_NEAR(norm(point - Vec3d{0.25 * static_cast<double>(frame), 2, 0}), 0.5, 0.01);
+    for (const auto& point : run.obstacle_points(frame, shown[1])) EXPECT_EQ(point[1], 0);
+  }
+  const auto xdmf = test::content_of(scratch / "run.xdmf");
+  EXPECT_NE(xdmf.find(">run.h5:/frames/00000001/obstacles/ball<"), std::string::npos);
+  EXPECT_EQ(xdmf.find(">run.h5:/frames/00000001/obstacles/ground<"), std::string::npos) << "it stands still";
+}
+
 TEST(FrameWriter, ContinuesWhereThereIsNoRunByBeginning) {
   const test::Scratch scratch;
   Motion motion(test::tet_cube(2));

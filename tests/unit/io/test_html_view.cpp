@@ -104,7 +104,9 @@ struct Decoded {
     for (std::string line; std::getline(lines, line);) {
       const auto blank = line.find(' ');
       frames.push_back(from_base64(line.substr(0, blank)));
-      dots.push_back(from_base64(line.substr(blank + 1)));
+      const auto second = line.find(' ', blank + 1);
+      dots.push_back(from_base64(line.substr(blank + 1, second - blank - 1)));
+      obstacle_points.push_back(from_base64(line.substr(second + 1)));
     }
   }
 
@@ -125,7 +127,7 @@ struct Decoded {
 
   std::vector<double> lower, upper, rows;
   std::vector<std::uint8_t> triangles;
-  std::vector<std::vector<std::uint8_t>> frames, dots;
+  std::vector<std::vector<std::uint8_t>> frames, dots, obstacle_points;
 
  private:
   [[nodiscard]] double coordinate(const std::vector<std::uint8_t>& bytes, std::size_t first,

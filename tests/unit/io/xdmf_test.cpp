@@ -37,6 +37,19 @@ TEST(Xdmf, SaysNothingOfFieldsThatAreNotThere) {
   EXPECT_TRUE(contains(text, "region"));
 }
 
+TEST(Xdmf, PutsObstaclesBesideTheBodies) {
+  const WrittenFrame frame{
+      "/frames/00000003", 0.3, {}, {{"ball", "/frames/00000001/obstacles/ball", 42, 80}}};
+  const auto text = xdmf_text({"run.h5", 11, {{CellType::tet4, 8}}}, std::vector{frame});
+  EXPECT_TRUE(contains(text, "GridType=\"Collection\" CollectionType=\"Spatial\""));
+  EXPECT_TRUE(contains(text, "<Topology TopologyType=\"Triangle\" NumberOfElements=\"80\">"));
+  EXPECT_TRUE(contains(text, ">run.h5:/obstacles/ball/triangles<"));
+  EXPECT_TRUE(contains(text,
+                       "Dimensions=\"42 3\" NumberType=\"Float\" Precision=\"8\" "
+                       "Format=\"HDF\">run.h5:/frames/00000001/obstacles/ball<"));
+  EXPECT_EQ(text.find("<Time"), text.rfind("<Time")) << "one time a frame";
+}
+
 TEST(Xdmf, EscapesTheNameOfTheFile) {
   const auto text = xdmf_text({"a&<b>.h5", 11, {{CellType::tet4, 8}}}, {{{"/frames/00000000", 0, {}}}});
   EXPECT_TRUE(contains(text, ">a&amp;&lt;b&gt;.h5:/mesh"));
