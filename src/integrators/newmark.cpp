@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace evert {
 namespace {
@@ -167,13 +168,14 @@ int Newmark::couple(System& system) {
   if (!coupling_) return 0;
   int iterations = 0;
   system.collisions.share_impulses(solver_.reaction(), prescribed_, constraints_);
-  coupling_->solve(system, [&](std::span<const RigidState> before) {
+  const auto follow = [&](std::span<const RigidState> before) {
     for (std::size_t b = 0; b < before.size(); ++b)
       system.collisions.follow(system.rigid.bodies()[b], before[b]);
     join(prescribed_, system.collisions.constraints(), constraints_);
     iterations += solver_.refine(system.v, constraints_);
     system.collisions.share_impulses(solver_.reaction(), prescribed_, constraints_);
-  });
+  };
+  coupling_->solve(system, std::cref(follow));  // by reference: a function of its own would be allocated
   return iterations;
 }
 

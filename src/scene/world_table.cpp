@@ -81,7 +81,7 @@ Type<std::vector<VelocityKey>> velocity_over_time() {
 void finish_obstacle(ObstacleConfig& obstacle, const Value& map, const std::string& path) {
   const auto exclude = [&](const char* one, const char* other, const std::string& advice) {
     if (map.find(one) != nullptr && map.find(other) != nullptr)
-      fail(*map.find(other), join(path, other), std::string("and '") + one + "' exclude each other" + advice);
+      fail(*map.find(other), join(path, other), std::string("excludes '") + one + "'" + advice);
   };
   exclude("velocity", "motion", ": write 'motion: {velocity: ...}'");
   exclude("density", "mass", "");

@@ -42,7 +42,7 @@ const std::vector<Case> cases{
         "motion_of_two_kinds", "{velocity: [1, 0, 0], file: lift.csv}",
         {"scene.yaml:12: obstacles.ground.motion.file: is of a table, but 'velocity' of a steady motion"}),
     bad_motion("motion_twice", "{velocity: [1, 0, 0]}, velocity: [1, 0, 0]",
-               {"obstacles.ground: 'velocity' and 'motion' exclude each other"}),
+               {"obstacles.ground.motion: excludes 'velocity': write 'motion: {velocity: ...}'"}),
     bad_motion("motion_misspelt", "{angular_velocty: [1, 0, 0]}", {"did you mean 'angular_velocity'?"}),
     bad_motion("motion_without_frequency", "{amplitude: [1, 0, 0]}", {"'frequency' is missing [Hz]"}),
     bad_motion("motion_without_amplitude", "{frequency: 1}", {"needs 'amplitude' [m] or 'angle' [rad]"}),

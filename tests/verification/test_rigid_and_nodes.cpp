@@ -87,7 +87,8 @@ TEST(RigidAndNodes, ABallComesToRestOnAMattressHoweverLight) {
     test::verify("ball of " + mass + " kg on a mattress: its force over its weight", "1",
                  -given[1] / (simulation.time() - time) / weight, "0.99 to 1.01");
     EXPECT_NEAR(-given[1] / (simulation.time() - time) / weight, 1, 0.01) << mass;
-    EXPECT_LE(norm(ball->velocity()), 1e-3) << mass;
+    // A ball that is light beside the nodes may touch them in every other step: half of g Δt either way.
+    EXPECT_LE(norm(ball->velocity()), 9.81 * 4e-3) << mass;
     const auto now = simulation.measure();
     const auto energy = [](const Measurements& m) {
       return m.kinetic_energy + m.elastic_energy + m.gravitational_energy;

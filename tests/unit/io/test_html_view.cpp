@@ -7,6 +7,7 @@
 #include "../../mpi/io/scratch.hpp"
 #include "../../mpi/mesh/test_meshes.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -27,11 +28,12 @@ double stretch_of(std::size_t cell, double time) {
 
 constexpr double interval = 0.125;  // [s]
 
-void write_run(const Mesh& mesh, const std::string& path, int frames, const FrameFields& fields = {}) {
+void write_run(const Mesh& mesh, const std::string& path, int frames, const FrameFields& fields = {},
+               FrameWriter::Obstacles obstacles = {}) {
   const auto distributed = distribute(MPI_COMM_SELF, mesh);
   NodeField positions(distributed);
   const NodeField velocities(distributed);
-  FrameWriter writer(distributed, path, fields);
+  FrameWriter writer(distributed, path, fields, obstacles);
   for (int frame = 0; frame < frames; ++frame) {
     const double time = interval * frame;
     for (std::size_t node = 0; node < distributed.rest_positions.size(); ++node) {
@@ -39,6 +41,7 @@ void write_run(const Mesh& mesh, const std::string& path, int frames, const Fram
       std::ranges::copy(position.components,
                         positions.owned().begin() + static_cast<std::ptrdiff_t>(3 * node));
     }
+    for (const auto& obstacle : obstacles) obstacle->move_to({.end = time, .dt = interval});
     writer.write({time, frame, positions, velocities, [&](std::size_t block, std::span<double> per_cell) {
                     for (std::size_t i = 0; i < per_cell.size(); ++i)
                       per_cell[i] =
@@ -335,6 +338,32 @@ TEST(HtmlView, RefusesAFileThatIsNoRunOrIsCutShort) {
     fs::copy_file(scratch / "run.h5", scratch / "cut.h5", fs::copy_options::overwrite_existing);
     fs::resize_file(scratch / "cut.h5", whole * static_cast<std::uintmax_t>(tenth) / 10);
     EXPECT_NE(test::user_error_of([&] { static_cast<void>(view_of(scratch / "cut.h5")); }), "") << tenth;
+  }
+}
+
+TEST(HtmlView, ShowsObstaclesThatHaveAnEnd) {
+  const test::Scratch scratch;
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
+  obstacles.push_back(std::make_unique<Obstacle>(
+      "ball", 0.1, std::make_unique<Sphere>(0.5),
+      std::make_unique<UniformMotion>(RigidState{.origin = {0, 2, 0}, .velocity = {4, 0, 0}})));
+  obstacles.push_back(std::make_unique<Obstacle>("ground", 0.1,
+                                                 std::make_unique<HalfSpace>(Vec3d{}, Vec3d{0, 1, 0}),
+                                                 std::make_unique<UniformMotion>(RigidState{})));
+  write_run(test::tet_cube(2), scratch / "run.h5", 3, {}, obstacles);
+  const Decoded page(view_of(scratch / "run.h5", {}).page);
+  const auto ball = RunReader(scratch / "run.h5").obstacle_points(0, {.name = "ball", .triangles = {}});
+  ASSERT_EQ(page.frames.size(), 3U);
+  for (std::size_t f = 0; f < 3; ++f) {
+    const auto& bytes = page.obstacle_points[f];
+    ASSERT_EQ(bytes.size(), 12 * ball.size()) << "the ball, and nothing of the ground";
+    for (std::size_t i = 0; i < ball.size(); ++i) {
+      const auto number = [&](std::size_t c) {
+        return std::bit_cast<float>(little_endian(bytes, 3 * i + c, 4));
+      };
+      const Vec3d off{number(0) - 0.5 * static_cast<double>(f), number(1) - 2.0, number(2)};
+      EXPECT_NEAR(norm(off), 0.5, 0.01);
+    }
   }
 }
 
