@@ -56,6 +56,10 @@ class ElasticForces {
   /// Lumped masses of the owned nodes [kg].
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
+  /// Of a region, at rest [kg/m^3].
+  [[nodiscard]] double density(std::int32_t region) const {
+    return densities_[static_cast<std::size_t>(region)];
+  }
   [[nodiscard]] const Halo& halo() const { return halo_; }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
@@ -74,6 +78,7 @@ class ElasticForces {
   std::vector<std::unique_ptr<ElasticBlock>>
       blocks_;  // parallel to mesh_.cells; null where a rank has no cells
   std::vector<double> masses_;
+  std::vector<double> densities_;         // per region
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
   mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
