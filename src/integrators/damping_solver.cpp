@@ -33,12 +33,19 @@ double first_norm(KSP ksp) {
 }  // namespace
 
 DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
+    : DampingSolver(mesh, elastic, Damping::implicit) {}
+
+DampingSolver DampingSolver::without_damping(const DistributedMesh& mesh, const ElasticForces& elastic) {
+  return {mesh, elastic, Damping::left_out};
+}
+
+DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, Damping damping)
     : mesh_(mesh), elastic_(elastic) {
   check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, reaction_.out()));
   check(VecSetBlockSize(reaction_.get(), 3));
   check(VecDuplicate(reaction_.get(), projected_.out()));
   check(VecDuplicate(reaction_.get(), correction_.out()));
-  if (elastic.damped()) create_ksp();
+  if (damping == Damping::implicit && elastic.damped()) create_ksp();
 }
 
 void DampingSolver::create_ksp() {

@@ -1,48 +1,31 @@
 #include "evert/integrators/newmark.hpp"
 
 #include "evert/core/log.hpp"
-#include "evert/math/nodal.hpp"
 
+#include "set_vec.hpp"
 #include <algorithm>
-#include <array>
 
 namespace evert {
-namespace {
 
-// Two passes settle a body that slides. Among many contacts there are always some at the edge of sticking
-// that change in every pass: what they exert is left to the next step once it is this share of all friction.
-constexpr int most_friction_passes = 5;
-constexpr double friction_tolerance = 1e-3;
-
-/// Every owned component of `vec` becomes value(index, component).
-template <class Value>
-void set_vec(Vec vec, Value&& value) {
-  PetscScalar* values = nullptr;
-  PetscInt size = 0;
-  check(VecGetLocalSize(vec, &size));
-  check(VecGetArray(vec, &values));
-  {
-    const PhaseScope scope(Phase::vector_update, 3.0 * size);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) values[i] = value(i, values[i]);
-  }
-  check(VecRestoreArray(vec, &values));
+Newmark::Newmark(const System& system)
+    : solver_(system.mesh, system.elastic), held_(system), predicted_(system.mesh) {
+  check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
 }
 
-}  // namespace
-
-Newmark::Newmark(const System& system) : solver_(system.mesh, system.elastic), predicted_(system.mesh) {
-  check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
-  constraints_.reserve(system.masses().size());
+double Newmark::stable_step(const System& system) {
+  // At its limit a stiffly damped mode changes sign in every step; at half of it, it decays.
+  const auto bound = system.elastic.stable_step(system.x);
+  return std::max(bound.undamped, bound.damped / 2);
 }
 
 StepReport Newmark::advance(System& system, double dt) {
   StepReport report{.dt = dt};
   report.cg_iterations = predict(system, dt);
-  const auto held = collide(system, dt);
-  if (!held.colliding) account_for_mass_damping(system, dt / 2);
+  const auto held = held_.collide(system, predicted_, dt);  // 3.
+  if (!held.colliding) account_for_mass_damping(system, system.v.owned(), dt / 2);
   report.cg_iterations += correct(system, dt, held.colliding);
-  if (held.colliding || held.prescribed) report.cg_iterations += rub(system);
-  account_for_mass_damping(system, implicit_);
+  if (held.any()) report.cg_iterations += held_.rub(system, solver_);
+  account_for_mass_damping(system, system.v.owned(), implicit_);
   remember_change(system, system.v.owned(), predicted_.owned());
   report.contacts = system.collisions.contacts();
   system.time += dt;
@@ -76,22 +59,6 @@ void Newmark::remember_change(System& system, std::span<const double> after,
   set_vec(system.v_change.vec(), [&](std::size_t i, double) { return after[i] - before[i]; });
 }
 
-/// 3. collisions turn x̃ into xⁿ⁺¹ and vⁿ into ṽⁿ. Returns what holds nodes of any rank now.
-Newmark::Held Newmark::collide(System& system, double dt) {
-  const PhaseScope scope(Phase::contact);
-  constraints_.clear();
-  if (!system.collisions.any_obstacles() && system.prescribed.empty()) return {};
-  prescribed_ = system.prescribed.at(system.time + dt);
-  system.collisions.resolve(system.x.owned(), system.v.owned(), predicted_.owned(), prescribed_,
-                            {system.time + dt, dt});
-  system.x.touched();
-  system.v.touched();
-  join(prescribed_, system.collisions.constraints(), constraints_);
-  std::array<int, 2> flags{system.collisions.contacts() > 0 ? 1 : 0, prescribed_.empty() ? 0 : 1};
-  MPI_Allreduce(MPI_IN_PLACE, flags.data(), 2, MPI_INT, MPI_MAX, system.mesh.comm);
-  return {flags[0] != 0, flags[1] != 0};
-}
-
 /// 4. (M + Δt/2 C(xⁿ⁺¹)) vⁿ⁺¹ = M ṽⁿ + Δt/2 [f(xⁿ) − C(xⁿ) ṽⁿ + f(xⁿ⁺¹)]
 ///
 /// In steps with contacts the damping is taken at the end of the step alone, (M + Δt C(xⁿ⁺¹)) vⁿ⁺¹: the
@@ -107,57 +74,9 @@ int Newmark::correct(System& system, double dt, bool colliding) {
     solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
   system.update_forces(system.time + dt);
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
-  for (const double m : mass) system.impulses.gravity += dt * m * system.gravity;
+  account_for_gravity(system, dt);
   follow_forces(system);
-  return solver_.solve(implicit_, right_.get(), system.v, constraints_, system.v_change.vec());
-}
-
-/// Collective.
-bool obeys_coulomb(const System& system, std::span<const double> reaction) {
-  const auto error = system.collisions.friction_error(system.v.owned(), reaction);
-  std::array<double, 2> sums{error.excess, error.allowed};
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, system.mesh.comm);
-  return sums[0] <= friction_tolerance * sums[1];
-}
-
-/// The solve held whatever friction may hold. Nodes that pull harder than Coulomb allows slide, and those
-/// that friction would turn round stick again: solved once more, with the impulses of sliding friction on the
-/// right, until friction is Coulomb's. Then the account of what the constraints exerted.
-int Newmark::rub(System& system) {
-  auto& collisions = system.collisions;
-  int iterations = 0;
-  auto reaction = solver_.reaction();
-  for (int pass = 0; pass < most_friction_passes; ++pass) {
-    if (obeys_coulomb(system, reaction)) break;
-    collisions.slide(system.v.owned(), reaction);
-    join(prescribed_, collisions.constraints(), constraints_);
-    iterations += solver_.refine(system.v, constraints_);
-    reaction = solver_.reaction();
-  }
-  collisions.stop_reversed(system.v.owned());
-  impose(prescribed_, system.v.owned());
-  system.v.touched();
-  const auto exerted = [&](std::span<const NodeConstraint> constraints) {
-    Vec3d sum{};
-    for (const auto& c : constraints) {
-      const auto r = node_value(reaction, c.node);
-      sum += r - c.free * r;
-    }
-    return sum;
-  };
-  const auto by_prescription = exerted(prescribed_);
-  system.impulses.constraint += by_prescription;
-  system.impulses.contact +=
-      exerted(constraints_) - by_prescription + collisions.friction() + collisions.impulse();
-  return iterations;
-}
-
-/// What mass-proportional damping takes off the momentum in a time `dt` at the present velocities.
-void Newmark::account_for_mass_damping(System& system, double dt) {
-  const auto damping = system.elastic.mass_damping();
-  for (std::size_t node = 0; node < damping.size(); ++node)
-    system.impulses.damping -=
-        dt * damping[node] * node_value(system.v.owned(), static_cast<std::ptrdiff_t>(node));
+  return solver_.solve(implicit_, right_.get(), system.v, held_.constraints(), system.v_change.vec());
 }
 
 /// C(x) and its diagonal are those of the last force update, whoever asked for it.

@@ -110,6 +110,9 @@ std::string complaint(const std::string& name, const LiveSolvers& live) {
   const auto prefix = prefix_of(name);
   if (prefix == "damping_" && live.quasistatic)
     return "-" + name + ": has no effect, since integrator.method is quasistatic";
+  if (prefix == "damping_" && live.explicit_damping)
+    return "-" + name +
+           ": has no effect, since the integrator.method takes damping explicitly: that is for newmark";
   if (prefix == "damping_" && !is_live(prefix, live))
     return "-" + name + ": has no effect, since nothing in this scene is damped (bodies.NAME.damping)";
   if (prefix == "quasistatic_" && !is_live(prefix, live))
@@ -131,7 +134,10 @@ const std::vector<std::string>& process_options() {
 }
 
 LiveSolvers solvers_of(const Simulation& simulation) {
-  return {!simulation.quasistatic() && simulation.elastic().damped(), simulation.quasistatic()};
+  return {.damping = simulation.solves_for_damping(),
+          .explicit_damping =
+              !simulation.quasistatic() && simulation.elastic().damped() && !simulation.solves_for_damping(),
+          .quasistatic = simulation.quasistatic()};
 }
 
 void apply_petsc_block(const SceneConfig& scene) {

@@ -34,12 +34,20 @@ const Table<OutputConfig>& output_table() {
 const Table<IntegratorConfig>& integrator_table() {
   static const auto table =
       Table<IntegratorConfig>("How time advances.")
-          .optional("method", &IntegratorConfig::method,
-                    one_of<IntegrationMethod>({{"newmark", IntegrationMethod::newmark,
-                                                "elastic forces explicit, damping implicit, second order"},
-                                               {"quasistatic", IntegrationMethod::quasistatic,
-                                                "states of rest, without inertia, damping and obstacles"}}),
-                    "newmark", "Time stepping.")
+          .optional(
+              "method", &IntegratorConfig::method,
+              one_of<IntegrationMethod>({{"newmark", IntegrationMethod::newmark,
+                                          "elastic forces explicit, damping implicit, second order"},
+                                         {"verlet", IntegrationMethod::verlet,
+                                          "elastic forces and damping explicit (leapfrog), second order"},
+                                         {"symplectic_euler", IntegrationMethod::symplectic_euler,
+                                          "both explicit, forces first, first order"},
+                                         {"explicit_euler", IntegrationMethod::explicit_euler,
+                                          "both explicit, positions first, first order; unstable without "
+                                          "damping, and there to show it"},
+                                         {"quasistatic", IntegrationMethod::quasistatic,
+                                          "states of rest, without inertia, damping and obstacles"}}),
+              "newmark", "Time stepping.")
           .optional("time_step", &IntegratorConfig::time_step, word_or_number("auto", "s", above(0)), "1e-4",
                     "auto: the largest stable and accurate step, found anew as the state changes; with "
                     "quasistatic, one step from each frame, event or other time that is hit to the next.")
@@ -75,6 +83,12 @@ const Table<IntegratorConfig>& integrator_table() {
               if (statics) refuse(key, "newmark");
             for (const char* key : {"load_steps", "tangent"})
               if (!statics) refuse(key, "quasistatic");
+            if (config.method == IntegrationMethod::explicit_euler && !config.time_step) {
+              const auto* value = map.find("time_step");
+              fail(value != nullptr ? *value : map, join(path, "time_step"),
+                   "must be a number of seconds with 'method: explicit_euler': without damping no step is "
+                   "stable, and auto has none to choose");
+            }
           });
   return table;
 }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <type_traits>
 
 namespace evert {
 namespace {
@@ -149,12 +150,17 @@ double Simulation::suggested_time_step() {
   refresh_forces();
   if (fixed_time_step_ > 0) return fixed_time_step_;
   if (quasistatic()) return std::numeric_limits<double>::infinity();
-  const double dt = time_step_.suggest(system_);
+  const auto limit = std::visit(
+      [](const auto& integrator) -> StabilityLimit {
+        return &std::remove_cvref_t<decltype(integrator)>::stable_step;
+      },
+      integrator_);
+  const double dt = time_step_.suggest(system_, limit);
   if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
   // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
   activate_highest(system_.time + time_step_.horizon());
   time_step_.reset();
-  const double ahead = time_step_.suggest(system_);
+  const double ahead = time_step_.suggest(system_, limit);
   activate(system_.time);
   return std::min(dt, ahead);
 }

@@ -38,6 +38,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> fibre_cases();
 [[nodiscard]] std::vector<Case> material_cases();
 [[nodiscard]] std::vector<Case> quasistatic_cases();
+[[nodiscard]] std::vector<Case> explicit_cases();
 
 // --- good input to spoil
 

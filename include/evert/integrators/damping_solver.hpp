@@ -19,6 +19,11 @@ class DampingSolver {
   /// Collective. Reads the options; throws UserError for one that cannot work.
   DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic);
 
+  /// Collective. One for schemes that put damping on the right-hand side: C is taken for zero whatever is
+  /// damped, a solve is a division by the masses, and no options are read.
+  [[nodiscard]] static DampingSolver without_damping(const DistributedMesh& mesh,
+                                                     const ElasticForces& elastic);
+
   /// Collective. With -help: makes PETSc print what the solver can be told.
   static void print_options(MPI_Comm comm);
 
@@ -46,6 +51,8 @@ class DampingSolver {
   [[nodiscard]] bool damped() const { return operator_ != nullptr; }
 
  private:
+  enum class Damping { implicit, left_out };
+  DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, Damping damping);
   void create_ksp();
   int correct(NodeField& v, std::span<const NodeConstraint> constraints, Vec along);
   double go_along(Vec direction);
@@ -56,7 +63,7 @@ class DampingSolver {
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
-  std::unique_ptr<DampingOperator> operator_;    // none where nothing is damped: the solve is then a division
+  std::unique_ptr<DampingOperator> operator_;    // none without damping: the solve is then a division
   std::unique_ptr<AssembledDamping> assembled_;  // with -damping_mat_type other than shell
   KspHandle ksp_;
   VecHandle reaction_, projected_, correction_;

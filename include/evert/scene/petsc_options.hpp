@@ -25,6 +25,7 @@ void require_option_values(const SceneConfig& scene, std::span<const std::string
 /// The solvers that options may be for.
 struct LiveSolvers {
   bool damping = false;
+  bool explicit_damping = false;  ///< damped, without a solve
   bool quasistatic = false;
 };
 /// Those that a simulation has.

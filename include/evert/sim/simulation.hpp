@@ -60,6 +60,11 @@ class Simulation {
   /// True where the steps are states of rest.
   [[nodiscard]] bool quasistatic() const { return std::holds_alternative<Quasistatic>(integrator_); }
 
+  /// True where velocities are solved for with damping implicit.
+  [[nodiscard]] bool solves_for_damping() const {
+    return std::holds_alternative<Newmark>(integrator_) && elastic_.damped();
+  }
+
   /// Throws SimulationError with the time, `what`, and what may help. Not collective; for all ranks together.
   [[noreturn]] void give_up(const std::string& what) const;
 
