@@ -64,10 +64,10 @@ EpsHandle krylov_schur(const MassScaledStiffness& stiffness, double tolerance) {
 FastestMode fastest_mode(const MassScaledStiffness& stiffness, double tolerance) {
   need_slepc();
   FastestMode mode{0, start_vector(stiffness)};
+  const auto eps = krylov_schur(stiffness, tolerance);
   PetscReal norm = 0;
   check(MatNorm(stiffness.mat(), NORM_FROBENIUS, &norm));
   if (norm == 0) return mode;  // every vector is one of 0
-  const auto eps = krylov_schur(stiffness, tolerance);
   Vec start = mode.scaled.get();
   check(EPSSetInitialSpace(eps.get(), 1, &start));
   check_options([&] { return EPSSolve(eps.get()); });

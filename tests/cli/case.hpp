@@ -39,6 +39,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> material_cases();
 [[nodiscard]] std::vector<Case> quasistatic_cases();
 [[nodiscard]] std::vector<Case> explicit_cases();
+[[nodiscard]] std::vector<Case> stability_cases();
 
 // --- good input to spoil
 

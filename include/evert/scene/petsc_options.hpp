@@ -27,6 +27,7 @@ struct LiveSolvers {
   bool damping = false;
   bool explicit_damping = false;  ///< damped, without a solve
   bool quasistatic = false;
+  bool stability = false;  ///< of evert stability, which no simulation has
 };
 /// Those that a simulation has.
 [[nodiscard]] LiveSolvers solvers_of(const Simulation& simulation);
