@@ -110,6 +110,7 @@ std::string usage() {
 
   evert run SCENE.yaml       simulate; on 4 ranks: mpirun -n 4 evert run SCENE.yaml
   evert check SCENE.yaml     say what would be built and what it would cost, and run nothing
+  evert stability SCENE.yaml say how long a step may be, and which elements make it short
   evert view RUN.h5          make a web page that plays a run
   evert explain [KEY]        say what a key of a scene means, or list all
   evert mesh COMMAND ...     generate, convert, judge or partition a mesh

@@ -74,14 +74,12 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
     }
   });
 
-  std::vector<double> densities;
-  for (const auto& of_region : properties) densities.push_back(of_region.density);
-  masses_ = lumped(densities);
+  for (const auto& of_region : properties) densities_.push_back(of_region.density);
+  masses_ = lumped(densities_);
   balance_masses(mesh_, halo_, masses_, blocks_);
   if (mass == MassForm::consistent) {
     lumped_over_consistent_ = lumped_over_consistent(mesh_);
-    consistent_mass_ = std::make_unique<ConsistentMass>(mesh_, halo_, densities);
-    densities_ = densities;
+    consistent_mass_ = std::make_unique<ConsistentMass>(mesh_, halo_, densities_);
     bound_consistent_step();
   }
 

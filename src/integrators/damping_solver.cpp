@@ -33,12 +33,19 @@ double first_norm(KSP ksp) {
 }  // namespace
 
 DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
+    : DampingSolver(mesh, elastic, Damping::implicit) {}
+
+DampingSolver DampingSolver::without_damping(const DistributedMesh& mesh, const ElasticForces& elastic) {
+  return {mesh, elastic, Damping::left_out};
+}
+
+DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, Damping damping)
     : mesh_(mesh), elastic_(elastic) {
   check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, reaction_.out()));
   check(VecSetBlockSize(reaction_.get(), 3));
   check(VecDuplicate(reaction_.get(), projected_.out()));
   check(VecDuplicate(reaction_.get(), correction_.out()));
-  if (elastic.couples_velocities()) create_ksp();
+  if (damping == Damping::implicit && elastic.couples_velocities()) create_ksp();
 }
 
 void DampingSolver::create_ksp() {
@@ -68,7 +75,7 @@ void DampingSolver::invalidate() {
 }
 
 void DampingSolver::add_damping(Vec v, Vec out, double factor) const {
-  if (elastic_.damped()) operator_->add_damping(v, out, factor);
+  if (operator_ != nullptr && elastic_.damped()) operator_->add_damping(v, out, factor);
 }
 
 int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints,

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace evert {
-double TimeStepControl::suggest(System& system) {
+double TimeStepControl::suggest(System& system, StabilityLimit limit) {
   system.elastic.halo().begin_update(system.v);
   system.elastic.halo().end_update(system.v);
   const bool estimate = age_ == never || age_ >= steps_between_estimates;
@@ -13,11 +13,7 @@ double TimeStepControl::suggest(System& system) {
   std::array<double, 2> limits{std::numeric_limits<double>::infinity(), stable_};
   const double rate = system.elastic.max_strain_rate(system.x, system.v);
   if (rate > 0) limits[0] = options_.max_strain_increment / rate;
-  if (estimate) {
-    // At its limit a stiffly damped mode changes sign in every step; at half of it, it decays.
-    const auto bound = system.elastic.stable_step(system.x);
-    limits[1] = std::max(bound.undamped, bound.damped / 2);
-  }
+  if (estimate) limits[1] = limit(system);
   MPI_Allreduce(MPI_IN_PLACE, limits.data(), 2, MPI_DOUBLE, MPI_MIN, system.mesh.comm);
   stable_ = limits[1];
   age_ = estimate ? 1 : age_ + 1;

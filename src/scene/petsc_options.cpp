@@ -14,7 +14,7 @@
 namespace evert {
 namespace {
 
-constexpr std::array<std::string_view, 2> solver_prefixes{"damping_", "quasistatic_"};
+constexpr std::array<std::string_view, 3> solver_prefixes{"damping_", "quasistatic_", "stability_"};
 
 /// Of the solves we make, without their prefix: options that mean nothing without a value.
 const std::vector<std::string> valued_options{"mat_type",
@@ -40,15 +40,34 @@ const std::vector<std::string> valued_options{"mat_type",
                                               "snes_stol",
                                               "snes_max_it",
                                               "snes_max_funcs",
-                                              "snes_linesearch_type"};
+                                              "snes_linesearch_type",
+                                              "eps_type",
+                                              "eps_tol",
+                                              "eps_max_it",
+                                              "eps_ncv"};
 /// And those that may stand alone.
-const std::vector<std::string> flag_options{
-    "ksp_monitor",  "ksp_view",  "ksp_converged_reason",  "ksp_initial_guess_nonzero",
-    "snes_monitor", "snes_view", "snes_converged_reason", "snes_linesearch_monitor",
-    "snes_ksp_ew"};
+const std::vector<std::string> flag_options{"ksp_monitor",
+                                            "ksp_view",
+                                            "ksp_converged_reason",
+                                            "ksp_initial_guess_nonzero",
+                                            "snes_monitor",
+                                            "snes_view",
+                                            "snes_converged_reason",
+                                            "snes_linesearch_monitor",
+                                            "snes_ksp_ew",
+                                            "eps_monitor",
+                                            "eps_view",
+                                            "eps_converged_reason"};
 /// PETSc reads these in each solve, not in the set-up.
 const std::vector<std::string> late_options{"ksp_converged_reason", "ksp_test_null_space",
                                             "snes_converged_reason", "snes_view"};
+
+/// Eigenvalues are asked of `stability_` alone, nonlinear solves are `quasistatic_`.
+bool goes_with(std::string_view prefix, std::string_view name) {
+  if (prefix == "stability_" || name.starts_with("eps_"))
+    return prefix == "stability_" && name.starts_with("eps_");
+  return prefix == "quasistatic_" || !name.starts_with("snes_");
+}
 
 /// Options worth a suggestion: those of the solves we make, and the ones of PETSc that users type.
 std::vector<std::string> well_known_options() {
@@ -56,7 +75,7 @@ std::vector<std::string> well_known_options() {
   for (const auto prefix : solver_prefixes)
     for (const auto& list : {valued_options, flag_options})
       for (const auto& name : list)
-        if (prefix != "damping_" || !name.starts_with("snes_")) names.push_back(std::string(prefix) + name);
+        if (goes_with(prefix, name)) names.push_back(std::string(prefix) + name);
   return names;
 }
 
@@ -110,6 +129,11 @@ std::string complaint(const std::string& name, const LiveSolvers& live) {
   const auto prefix = prefix_of(name);
   if (prefix == "damping_" && live.quasistatic)
     return "-" + name + ": has no effect, since integrator.method is quasistatic";
+  if (prefix == "stability_" && !live.stability)
+    return "-" + name + ": has no effect here: it is for evert stability";
+  if (prefix == "damping_" && live.explicit_damping)
+    return "-" + name +
+           ": has no effect, since the integrator.method takes damping explicitly: that is for newmark";
   if (prefix == "damping_" && !is_live(prefix, live))
     return "-" + name +
            ": has no effect, since nothing in this scene is damped (bodies.NAME.damping) and masses are "
@@ -133,7 +157,10 @@ const std::vector<std::string>& process_options() {
 }
 
 LiveSolvers solvers_of(const Simulation& simulation) {
-  return {!simulation.quasistatic() && simulation.elastic().couples_velocities(), simulation.quasistatic()};
+  const bool solves = simulation.solves_for_velocities();
+  return {.damping = solves,
+          .explicit_damping = !solves && !simulation.quasistatic() && simulation.elastic().damped(),
+          .quasistatic = simulation.quasistatic()};
 }
 
 void apply_petsc_block(const SceneConfig& scene) {

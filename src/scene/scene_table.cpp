@@ -34,12 +34,20 @@ const Table<OutputConfig>& output_table() {
 const Table<IntegratorConfig>& integrator_table() {
   static const auto table =
       Table<IntegratorConfig>("How time advances.")
-          .optional("method", &IntegratorConfig::method,
-                    one_of<IntegrationMethod>({{"newmark", IntegrationMethod::newmark,
-                                                "elastic forces explicit, damping implicit, second order"},
-                                               {"quasistatic", IntegrationMethod::quasistatic,
-                                                "states of rest, without inertia, damping and obstacles"}}),
-                    "newmark", "Time stepping.")
+          .optional(
+              "method", &IntegratorConfig::method,
+              one_of<IntegrationMethod>({{"newmark", IntegrationMethod::newmark,
+                                          "elastic forces explicit, damping implicit, second order"},
+                                         {"verlet", IntegrationMethod::verlet,
+                                          "elastic forces and damping explicit (leapfrog), second order"},
+                                         {"symplectic_euler", IntegrationMethod::symplectic_euler,
+                                          "both explicit, forces first, first order"},
+                                         {"explicit_euler", IntegrationMethod::explicit_euler,
+                                          "both explicit, positions first, first order; unstable without "
+                                          "damping, and there to show it"},
+                                         {"quasistatic", IntegrationMethod::quasistatic,
+                                          "states of rest, without inertia, damping and obstacles"}}),
+              "newmark", "Time stepping.")
           .optional("mass", &IntegratorConfig::mass,
                     one_of<MassForm>({{"lumped", MassForm::lumped,
                                        "a mass at each node: cheapest, and the only one with obstacles"},
@@ -88,6 +96,16 @@ const Table<IntegratorConfig>& integrator_table() {
               if (statics) refuse(key, "newmark");
             for (const char* key : {"load_steps", "tangent", "untangle"})
               if (!statics) refuse(key, "quasistatic");
+            if (config.mass == MassForm::consistent && config.method != IntegrationMethod::newmark)
+              fail(*map.find("mass"), join(path, "mass"),
+                   "'consistent' goes with 'method: newmark' only: a scheme without solves needs masses of "
+                   "nodes, 'lumped'");
+            if (config.method == IntegrationMethod::explicit_euler && !config.time_step) {
+              const auto* value = map.find("time_step");
+              fail(value != nullptr ? *value : map, join(path, "time_step"),
+                   "must be a number of seconds with 'method: explicit_euler': without damping no step is "
+                   "stable, and auto has none to choose");
+            }
           });
   return table;
 }
@@ -125,6 +143,19 @@ void expect_countable(double interval, double end_time, const Value& map, const 
        shown(value) + " is not allowed: it makes more than 1e9 of them until end_time");
 }
 
+/// How hard a body is hit that gives way, only a solve tells.
+void expect_no_rigid_bodies_without_solve(const SceneConfig& scene, const Value& map) {
+  const auto method = scene.integrator.method;
+  if (method != IntegrationMethod::symplectic_euler && method != IntegrationMethod::explicit_euler) return;
+  for (const auto& obstacle : scene.obstacles) {
+    if (!obstacle.mass && !obstacle.density) continue;
+    const auto path = join("obstacles", obstacle.name);
+    const char* key = obstacle.mass ? "mass" : "density";
+    fail(*map.find("obstacles")->find(obstacle.name)->find(key), join(path, key),
+         "a rigid body with a mass goes with 'integrator.method: newmark' or 'verlet' only");
+  }
+}
+
 void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*path*/) {
   if (scene.output.directory.empty()) scene.output.directory = default_directory(scene.name);
   if (scene.integrator.time_step)
@@ -140,6 +171,7 @@ void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*pat
     fail(*map.find("obstacles"), "obstacles",
          "is not possible with 'integrator.mass: consistent': impacts and friction need masses of nodes, "
          "'lumped'");
+  expect_no_rigid_bodies_without_solve(scene, map);
   if (scene.bodies.empty()) fail(*map.find("bodies"), "bodies", "must name at least one body");
   for (const auto& [name, value] : scene.petsc) {
     const auto& entry = *map.find("petsc")->find(name);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <type_traits>
 
 namespace evert {
 namespace {
@@ -66,12 +67,24 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[9], values[10], values[11]}};
 }
 
-/// Contact and friction know masses of nodes, and what is at rest knows none.
+/// Contact, friction and schemes without solves know masses of nodes, and what is at rest knows none.
 MassForm possible_mass(const SimulationDefinition& definition) {
   if (definition.mass == MassForm::consistent &&
-      (!definition.obstacles.empty() || definition.method == IntegrationMethod::quasistatic))
-    throw UserError("consistent masses go neither with obstacles nor with quasistatic: must be lumped");
+      (!definition.obstacles.empty() || definition.method != IntegrationMethod::newmark))
+    throw UserError(
+        "consistent masses go neither with obstacles nor with methods but newmark: must be lumped");
   return definition.mass;
+}
+
+/// The Euler schemes have no solve after the impacts, which alone tells how hard a body is hit that gives
+/// way.
+std::vector<std::unique_ptr<Obstacle>> possible_obstacles(SimulationDefinition& definition) {
+  const bool solves = definition.method != IntegrationMethod::symplectic_euler &&
+                      definition.method != IntegrationMethod::explicit_euler;
+  for (const auto& obstacle : definition.obstacles)
+    if (!solves && obstacle->body() != nullptr)
+      throw UserError("'" + obstacle->name() + "': a rigid body with a mass needs newmark or verlet");
+  return std::move(definition.obstacles);
 }
 
 /// What moves, this rank's share.
@@ -118,7 +131,7 @@ std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t
 Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
     : mesh_(std::move(mesh)),
       elastic_(mesh_, definition.properties, possible_mass(definition)),
-      collisions_(std::move(definition.obstacles), elastic_.masses()),
+      collisions_(possible_obstacles(definition), elastic_.masses()),
       rigid_(collisions_.obstacles()),
       prescribed_(std::move(definition.prescribed)),
       system_(mesh_, elastic_, collisions_, rigid_, prescribed_, definition.gravity,
@@ -205,12 +218,17 @@ double Simulation::suggested_time_step() {
   refresh_forces();
   if (fixed_time_step_ > 0) return fixed_time_step_;
   if (quasistatic()) return std::numeric_limits<double>::infinity();
-  const double dt = time_step_.suggest(system_);
+  const auto limit = std::visit(
+      [](const auto& integrator) -> StabilityLimit {
+        return &std::remove_cvref_t<decltype(integrator)>::stable_step;
+      },
+      integrator_);
+  const double dt = time_step_.suggest(system_, limit);
   if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
   // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
   activate_highest(system_.time + time_step_.horizon());
   time_step_.reset();
-  const double ahead = time_step_.suggest(system_);
+  const double ahead = time_step_.suggest(system_, limit);
   activate(system_.time);
   return std::min(dt, ahead);
 }

@@ -42,6 +42,8 @@ struct Case {
 [[nodiscard]] std::vector<Case> shape_cases();
 [[nodiscard]] std::vector<Case> motion_cases();
 [[nodiscard]] std::vector<Case> rigid_cases();
+[[nodiscard]] std::vector<Case> explicit_cases();
+[[nodiscard]] std::vector<Case> stability_cases();
 
 // --- good input to spoil
 

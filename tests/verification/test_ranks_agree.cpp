@@ -28,21 +28,26 @@ events:
   - {at: 0.02, set: bodies.ball.material.youngs_modulus, to: 8.0e4}
 )";
 
-TEST(RanksAgree, PositionsAfter200StepsEqualThoseOfOneRank) {
-  const auto alone = test::after_steps(*test::build(falling_ball, {}, PETSC_COMM_SELF).simulation, 200);
-  auto scene = test::build(falling_ball);
+class RanksAgree : public testing::TestWithParam<const char*> {
+ protected:
+  std::vector<std::string> method_{std::string("integrator.method=") + GetParam()};
+};
+
+TEST_P(RanksAgree, PositionsAfter200StepsEqualThoseOfOneRank) {
+  const auto alone = test::after_steps(*test::build(falling_ball, method_, PETSC_COMM_SELF).simulation, 200);
+  auto scene = test::build(falling_ball, method_);
   const auto together = test::after_steps(*scene.simulation, 200);
   EXPECT_LE(test::largest_difference(alone, together), 1e-9 * 0.4);
   EXPECT_GT(norm(scene.simulation->measure().contact_impulse), 0) << "the scene must collide";
 }
 
-TEST(RanksAgree, TwoRunsAreBitwiseEqual) {
-  EXPECT_EQ(test::after_steps(*test::build(falling_ball).simulation, 100),
-            test::after_steps(*test::build(falling_ball).simulation, 100));
+TEST_P(RanksAgree, TwoRunsAreBitwiseEqual) {
+  EXPECT_EQ(test::after_steps(*test::build(falling_ball, method_).simulation, 100),
+            test::after_steps(*test::build(falling_ball, method_).simulation, 100));
 }
 
-TEST(RanksAgree, ARestoredRunIsBitwiseEqual) {
-  auto whole = test::build(falling_ball);
+TEST_P(RanksAgree, ARestoredRunIsBitwiseEqual) {
+  auto whole = test::build(falling_ball, method_);
   test::after_steps(*whole.simulation, 37);
   const auto& running = *whole.simulation;
   const auto [x, v, changes] = running.node_state();
@@ -51,11 +56,13 @@ TEST(RanksAgree, ARestoredRunIsBitwiseEqual) {
   const auto scalars = running.state_scalars();
   const auto uninterrupted = test::after_steps(*whole.simulation, 100);
 
-  auto restarted = test::build(falling_ball);
+  auto restarted = test::build(falling_ball, method_);
   restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
   EXPECT_EQ(restarted.simulation->steps(), 37);
   EXPECT_EQ(test::after_steps(*restarted.simulation, 100), uninterrupted);
 }
+
+INSTANTIATE_TEST_SUITE_P(All, RanksAgree, testing::Values("newmark", "verlet", "symplectic_euler"));
 
 /// A held and damped beam of quadratic tetrahedra with consistent masses.
 const std::string consistent_beam = R"(

@@ -127,6 +127,16 @@ TEST(Step, AllocatesNothingWhileARigidBodyRolls) {
   EXPECT_EQ(counts.allocations, 0);
 }
 
+TEST(Step, AllocatesNothingWithExplicitDamping) {
+  for (const char* method : {"verlet", "symplectic_euler"})
+    for (const char* damping : {"rotated", "blended"})
+      EXPECT_EQ(counts_of_steps({}, {std::string("integrator.method=") + method,
+                                     std::string("bodies.block.damping.model=") + damping})
+                    .allocations,
+                0)
+          << method << ", " << damping;
+}
+
 TEST(Step, IsSeenToAssembleWhereToldTo) {
   check(PetscLogDefaultBegin());
   EXPECT_GT(counts_of_steps({"-damping_mat_type baij"}).assemblies, 0);

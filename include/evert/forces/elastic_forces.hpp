@@ -77,6 +77,10 @@ class ElasticForces {
     return consistent_mass_damping_.get();
   }
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
+  /// Of a region, at rest [kg/m^3].
+  [[nodiscard]] double density(std::int32_t region) const {
+    return densities_[static_cast<std::size_t>(region)];
+  }
   [[nodiscard]] const Halo& halo() const { return halo_; }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
@@ -102,10 +106,10 @@ class ElasticForces {
   std::vector<std::unique_ptr<ElasticBlock>>
       blocks_;  // parallel to mesh_.cells; null where a rank has no cells
   std::vector<double> masses_;
+  std::vector<double> densities_;         // per region
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
   std::unique_ptr<ConsistentMass> consistent_mass_, consistent_mass_damping_;  // where asked for
-  std::vector<double> densities_;      // per region, only with consistent masses
   double lumped_over_consistent_ = 1;  // masses, the largest ratio in any cell
   double step_over_lumped_ = 1;        // of the stable step
   mutable NodeField scratch_;          // columns of the diagonal blocks on their way to the owners

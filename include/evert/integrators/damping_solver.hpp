@@ -19,6 +19,11 @@ class DampingSolver {
   /// Collective. Reads the options; throws UserError for one that cannot work.
   DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic);
 
+  /// Collective. One for schemes that put damping on the right-hand side: C is taken for zero whatever is
+  /// damped, a solve is a division by the masses, which must be lumped, and no options are read.
+  [[nodiscard]] static DampingSolver without_damping(const DistributedMesh& mesh,
+                                                     const ElasticForces& elastic);
+
   /// Collective. With -help: makes PETSc print what the solver can be told.
   static void print_options(MPI_Comm comm);
 
@@ -49,6 +54,8 @@ class DampingSolver {
   [[nodiscard]] bool iterates() const { return operator_ != nullptr; }
 
  private:
+  enum class Damping { implicit, left_out };
+  DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, Damping damping);
   void create_ksp();
   int correct(NodeField& v, std::span<const NodeConstraint> constraints, Vec along);
   double go_along(Vec direction);

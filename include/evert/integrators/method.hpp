@@ -3,7 +3,7 @@
 /// What can be chosen about the way that time advances, as plain values.
 namespace evert {
 
-enum class IntegrationMethod { newmark, quasistatic };
+enum class IntegrationMethod { newmark, verlet, symplectic_euler, explicit_euler, quasistatic };
 
 /// Which tangent the Newton steps of `quasistatic` are made with.
 enum class TangentChoice {

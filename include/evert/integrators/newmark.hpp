@@ -1,13 +1,11 @@
 #pragma once
 #include "evert/integrators/damping_solver.hpp"
-#include "evert/integrators/rigid_coupling.hpp"
+#include "evert/integrators/held_nodes.hpp"
 #include "evert/integrators/step_report.hpp"
 #include "evert/integrators/system.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
 namespace evert {
 
@@ -24,30 +22,22 @@ class Newmark {
   /// converge.
   StepReport advance(System& system, double dt);
 
+  /// Collective. The largest step [s] that is stable at the present state, as far as this rank's elements
+  /// say.
+  [[nodiscard]] static double stable_step(const System& system);
+
  private:
-  /// What holds nodes of any rank in a step.
-  struct Held {
-    bool colliding = false;
-    bool prescribed = false;
-  };
   void take_momentum_and_half_impulse(const System& system, double dt);
   int predict(System& system, double dt);
-  Held collide(System& system, double dt);
   int correct(System& system, double dt, bool colliding);
-  int rub(System& system);
-  int couple(System& system);
   void remember_change(System& system, std::span<const double> after, std::span<const double> before) const;
-  static void account_for_obstacles(System& system, double dt);
-  static void account_for_mass_damping(System& system, double dt);
   void follow_forces(const System& system);
 
   DampingSolver solver_;
+  HeldNodes held_;
   NodeField predicted_;  // ṽ at the middle of the step
   VecHandle right_;
-  std::optional<RigidCoupling> coupling_;       // where a rigid body has a mass
-  double implicit_ = 0;                         // s of the last velocity solve, M + s C [s]
-  std::span<const NodeConstraint> prescribed_;  // at the end of the step; system.prescribed owns them
-  std::vector<NodeConstraint> constraints_;     // those and the normals of colliding nodes
+  double implicit_ = 0;  // s of the last velocity solve, M + s C [s]
   std::uint64_t forces_seen_ = 0;
 };
 

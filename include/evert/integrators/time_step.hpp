@@ -10,6 +10,9 @@ struct TimeStepOptions {
       0.1;  ///< largest change of any element's strain in one step, of its stretch above 1
 };
 
+/// The stable_step of an integrator: what of the elements' bounds limits it.
+using StabilityLimit = double (*)(const System&);
+
 /// Chooses the step from the element bounds at the current tangent. They are re-estimated every few steps,
 /// and at once where the state has changed quickly; in between, the step may only shrink by the strain limit.
 class TimeStepControl {
@@ -18,7 +21,7 @@ class TimeStepControl {
 
   /// Collective. The step to make now [s]; infinity when neither stiffness nor motion limits it, and next to
   /// nothing where the stresses of the state overflow.
-  [[nodiscard]] double suggest(System& system);
+  [[nodiscard]] double suggest(System& system, StabilityLimit limit);
 
   /// The last suggestion rests on an estimate of its own.
   [[nodiscard]] bool is_fresh() const { return age_ == 1; }

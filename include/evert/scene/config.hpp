@@ -260,7 +260,7 @@ struct OutputConfig {
 
 struct IntegratorConfig {
   IntegrationMethod method = IntegrationMethod::newmark;
-  MassForm mass = MassForm::lumped;   ///< consistent only without obstacles
+  MassForm mass = MassForm::lumped;   ///< consistent only with newmark, without obstacles
   std::optional<double> time_step;    ///< [s]; empty: auto
   double safety = 0.9;                ///< [-] of the stable step, with auto
   double max_strain_increment = 0.1;  ///< [-] largest change of strain in one step, with auto

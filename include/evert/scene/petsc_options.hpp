@@ -25,7 +25,9 @@ void require_option_values(const SceneConfig& scene, std::span<const std::string
 /// The solvers that options may be for.
 struct LiveSolvers {
   bool damping = false;
+  bool explicit_damping = false;  ///< damped, without a solve
   bool quasistatic = false;
+  bool stability = false;  ///< of evert stability, which no simulation has
 };
 /// Those that a simulation has.
 [[nodiscard]] LiveSolvers solvers_of(const Simulation& simulation);

@@ -32,7 +32,7 @@ struct SimulationDefinition {
   std::vector<Vec3d> initial_positions;   ///< per owned node [m]; empty: at rest shape
   std::vector<Vec3d> initial_velocities;  ///< per owned node [m/s]; empty: at rest
   IntegrationMethod method = IntegrationMethod::newmark;
-  MassForm mass = MassForm::lumped;  ///< consistent: without obstacles, and not quasistatic
+  MassForm mass = MassForm::lumped;  ///< consistent: newmark only, without obstacles
   QuasistaticOptions quasistatic;    ///< of that method
   double fixed_time_step = 0;        ///< [s]; 0: chosen by TimeStepControl
   TimeStepOptions time_step;

@@ -61,6 +61,11 @@ class Simulation {
   /// True where the steps are states of rest.
   [[nodiscard]] bool quasistatic() const { return std::holds_alternative<Quasistatic>(integrator_); }
 
+  /// True where a step solves for velocities: with damping implicit, or consistent masses.
+  [[nodiscard]] bool solves_for_velocities() const {
+    return std::holds_alternative<Newmark>(integrator_) && elastic_.couples_velocities();
+  }
+
   /// Throws SimulationError with the time, `what`, and what may help. Not collective; for all ranks together.
   [[noreturn]] void give_up(const std::string& what) const;
 
