@@ -6,6 +6,7 @@
 #include "mass_shares.hpp"
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace evert {
 namespace {
@@ -52,7 +53,7 @@ double points_of(const DistributedMesh& mesh) {
 }  // namespace
 
 ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties)
-    : mesh_(mesh), halo_(mesh), scratch_(mesh) {
+    : mesh_(mesh), halo_(mesh), properties_(properties.begin(), properties.end()), scratch_(mesh) {
   const auto properties_of = [&](const LocalCells& cells) -> const ElasticProperties& {
     return properties[static_cast<std::size_t>(cells.region)];
   };
@@ -173,13 +174,82 @@ double ElasticForces::max_strain_rate(const NodeField& x, const NodeField& v) co
 
 void ElasticForces::min_stretch(const NodeField& x, std::size_t block, std::span<double> per_cell) const {
   const PhaseScope scope(Phase::stretch_svd);
-  if (blocks_[block] != nullptr) blocks_[block]->min_stretch(x.local().data(), per_cell);
+  if (separations_.empty()) {
+    if (blocks_[block] != nullptr) blocks_[block]->min_stretch(x.local().data(), per_cell);
+    return;
+  }
+  std::vector<bool> separate(static_cast<std::size_t>(mesh_.cells[block].size()));
+  std::vector<double> of_part;
+  for (std::size_t s = 0; s < separations_.size(); ++s) {
+    const auto& [entry, cells] = separations_[s];
+    if (entry != block) continue;
+    of_part.resize(cells.size());
+    blocks_[mesh_.cells.size() + s]->min_stretch(x.local().data(), of_part);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      per_cell[static_cast<std::size_t>(cells[i])] = of_part[i];
+      separate[static_cast<std::size_t>(cells[i])] = true;
+    }
+  }
+  if (blocks_[block] == nullptr) return;
+  of_part.resize(static_cast<std::size_t>(blocks_[block]->cells()));
+  blocks_[block]->min_stretch(x.local().data(), of_part);
+  auto next = of_part.begin();
+  for (std::size_t cell = 0; cell < separate.size(); ++cell)
+    if (!separate[cell]) per_cell[cell] = *next++;
+}
+
+std::size_t ElasticForces::entry_of(std::size_t block) const {
+  return block < mesh_.cells.size() ? block : separations_[block - mesh_.cells.size()].entry;
+}
+
+bool ElasticForces::is_of_region(std::size_t block, std::int32_t region) const {
+  return blocks_[block] != nullptr && mesh_.cells[entry_of(block)].region == region;
+}
+
+std::unique_ptr<ElasticBlock> ElasticForces::make_block(std::size_t entry,
+                                                        std::span<const LocalIndex> cells) const {
+  if (cells.empty()) return nullptr;
+  const auto& all = mesh_.cells[entry];
+  const auto& properties = properties_[static_cast<std::size_t>(all.region)];
+  const auto nodes_a_cell = static_cast<std::size_t>(node_count(all.type));
+  LocalCells chosen{.type = all.type, .region = all.region, .nodes = {}, .global_ids = {}};
+  for (const LocalIndex cell : cells) {
+    const auto nodes =
+        std::span(all.nodes).subspan(nodes_a_cell * static_cast<std::size_t>(cell), nodes_a_cell);
+    chosen.nodes.insert(chosen.nodes.end(), nodes.begin(), nodes.end());
+    if (!all.vectors.empty()) chosen.vectors.push_back(all.vectors[static_cast<std::size_t>(cell)]);
+    chosen.interior += cell < all.interior ? 1 : 0;
+  }
+  return make_elastic_block(cells_of(chosen, properties.density), mesh_.rest_positions, properties.material,
+                            properties.damping, properties.precision);
+}
+
+void ElasticForces::separate(std::vector<SeparateCells> separate_cells) {
+  for (auto& [entry, cells, block] : separate_cells) {
+    for (std::size_t s = separations_.size(); s-- > 0;) {
+      if (separations_[s].entry != entry) continue;
+      separations_.erase(separations_.begin() + static_cast<std::ptrdiff_t>(s));
+      blocks_.erase(blocks_.begin() + static_cast<std::ptrdiff_t>(mesh_.cells.size() + s));
+    }
+    std::vector<LocalIndex> rest(static_cast<std::size_t>(mesh_.cells[entry].size()));
+    std::iota(rest.begin(), rest.end(), 0);
+    std::erase_if(rest, [&, next = cells.begin()](LocalIndex cell) mutable {
+      const bool is_separate = next != cells.end() && *next == cell;
+      if (is_separate) ++next;
+      return is_separate;
+    });
+    blocks_[entry] = make_block(entry, rest);
+    if (cells.empty()) continue;
+    separations_.push_back({entry, std::move(cells)});
+    blocks_.push_back(std::move(block));
+  }
+  balance_masses(mesh_, halo_, masses_, blocks_);
 }
 
 void ElasticForces::set_properties(std::int32_t region, const ElasticProperties& properties) {
+  properties_[static_cast<std::size_t>(region)] = properties;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
-      blocks_[i]->set_material(properties.material, properties.damping);
+    if (is_of_region(i, region)) blocks_[i]->set_material(properties.material, properties.damping);
   balance_masses(mesh_, halo_, masses_, blocks_);
   if (damped_densities_.empty()) return;
   damped_densities_[static_cast<std::size_t>(region)] =
@@ -189,7 +259,7 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
 
 void ElasticForces::set_activation(std::int32_t region, double activation) {
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    if (blocks_[i] != nullptr && mesh_.cells[i].region == region) blocks_[i]->set_activation(activation);
+    if (is_of_region(i, region)) blocks_[i]->set_activation(activation);
 }
 
 std::size_t ElasticForces::memory() const {
