@@ -65,6 +65,10 @@ class ElasticForces {
   /// First one per entry of DistributedMesh::cells, null where a rank has no cells of it or all are separate;
   /// then those of separate cells.
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
+  /// Of a region, at rest [kg/m^3].
+  [[nodiscard]] double density(std::int32_t region) const {
+    return densities_[static_cast<std::size_t>(region)];
+  }
   [[nodiscard]] const Halo& halo() const { return halo_; }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
@@ -98,6 +102,7 @@ class ElasticForces {
   };
   std::vector<Separation> separations_;  // of the blocks behind those of the entries
   std::vector<double> masses_;
+  std::vector<double> densities_;         // per region
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
   mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners

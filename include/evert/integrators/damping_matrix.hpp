@@ -1,6 +1,6 @@
 #pragma once
+#include "evert/forces/node_matrix.hpp"
 #include "evert/integrators/damping_operator.hpp"
-#include "evert/integrators/node_matrix.hpp"
 
 namespace evert {
 

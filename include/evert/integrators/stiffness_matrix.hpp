@@ -1,6 +1,6 @@
 #pragma once
 #include "evert/contact/velocity_constraints.hpp"
-#include "evert/integrators/node_matrix.hpp"
+#include "evert/forces/node_matrix.hpp"
 
 #include <span>
 #include <vector>

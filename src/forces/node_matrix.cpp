@@ -1,4 +1,4 @@
-#include "evert/integrators/node_matrix.hpp"
+#include "evert/forces/node_matrix.hpp"
 
 #include <array>
 #include <string_view>
