@@ -69,6 +69,37 @@ StrainFilter strain_filter(const ElementModes& modes, const Lame& lame, double l
           factors(modes.shears)};
 }
 
+TetMatrix element_stiffness(const TetShape& shape, const Lame& lame) {
+  TetMatrix k;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = 0; b < 4; ++b) {
+      const Vec3d &ga = shape.gradients[a], &gb = shape.gradients[b];
+      const Mat3d block = shape.volume * (lame.lambda * outer(ga, gb) + lame.mu * outer(gb, ga) +
+                                          (lame.mu * dot(ga, gb)) * identity<double>());
+      for (std::size_t i = 0; i < 9; ++i) k[12 * (3 * a + i / 3) + 3 * b + i % 3] = block(i / 3, i % 3);
+    }
+  return k;
+}
+
+TetMatrix element_stiffness(const TetShape& shape, const Lame& lame, const StrainFilter& filter) {
+  std::array<Vec3d, 4> g;
+  for (std::size_t a = 0; a < 4; ++a) g[a] = transpose_times(filter.axes, shape.gradients[a]);
+  TetMatrix k;
+  for (std::size_t column = 0; column < 12; ++column) {
+    const Mat3d change =
+        outer(Vec3d{filter.axes(column % 3, 0), filter.axes(column % 3, 1), filter.axes(column % 3, 2)},
+              g[column / 3]);
+    const Mat3d strain = filter(0.5 * (change + transpose(change)));
+    const Mat3d stress =
+        filter.transposed(2 * lame.mu * strain + (lame.lambda * trace(strain)) * identity<double>());
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Vec3d force = shape.volume * (filter.axes * (stress * g[a]));
+      for (std::size_t i = 0; i < 3; ++i) k[12 * (3 * a + i) + column] = force[i];
+    }
+  }
+  return k;
+}
+
 double largest_eigenvalue(const TetShape& shape, const TetMasses& masses, const Lame& lame,
                           const StrainFilter& filter) {
   // Strains as 6-vectors whose scalar product is that of the tensors: xx yy zz, √2 yz, √2 xz, √2 xy. With E'

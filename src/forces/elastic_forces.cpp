@@ -68,8 +68,9 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
     }
   });
 
-  for (const auto& of_region : properties) densities_.push_back(of_region.density);
-  masses_ = lumped(densities_);
+  std::vector<double> densities;
+  for (const auto& of_region : properties) densities.push_back(of_region.density);
+  masses_ = lumped(densities);
   balance_masses(mesh_, halo_, masses_, blocks_);
 
   const auto has_mass_damping = [](const ElasticProperties& p) {

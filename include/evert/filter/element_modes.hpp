@@ -64,6 +64,14 @@ struct StrainFilter {
 /// `limit` [1/s²] > 0; `lame` as given to element_modes. Of modes that are all below it A is the identity.
 [[nodiscard]] StrainFilter strain_filter(const ElementModes& modes, const Lame& lame, double limit);
 
+/// Row-major, x y z of node after node.
+using TetMatrix = std::array<double, 144>;
+
+/// K_e [N/m], and K'_e of the filter.
+[[nodiscard]] TetMatrix element_stiffness(const TetShape& shape, const Lame& lame);
+[[nodiscard]] TetMatrix element_stiffness(const TetShape& shape, const Lame& lame,
+                                          const StrainFilter& filter);
+
 /// The largest eigenvalue [1/s²] of the filtered element against any other masses.
 [[nodiscard]] double largest_eigenvalue(const TetShape& shape, const TetMasses& masses, const Lame& lame,
                                         const StrainFilter& filter);

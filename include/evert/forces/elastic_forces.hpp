@@ -66,10 +66,12 @@ class ElasticForces {
   /// then those of separate cells.
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
   /// Of a region, at rest [kg/m^3].
-  [[nodiscard]] double density(std::int32_t region) const {
-    return densities_[static_cast<std::size_t>(region)];
-  }
+  [[nodiscard]] double density(std::int32_t region) const { return properties(region).density; }
   [[nodiscard]] const Halo& halo() const { return halo_; }
+  /// Of a region at present.
+  [[nodiscard]] const ElasticProperties& properties(std::int32_t region) const {
+    return properties_[static_cast<std::size_t>(region)];
+  }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
   /// Not collective. Sets the activation of the muscle of `region`, in [0, 1]; call update() afterwards. Does
@@ -102,7 +104,6 @@ class ElasticForces {
   };
   std::vector<Separation> separations_;  // of the blocks behind those of the entries
   std::vector<double> masses_;
-  std::vector<double> densities_;         // per region
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
   mutable NodeField scratch_;  // columns of the diagonal blocks on their way to the owners
