@@ -79,6 +79,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       time_step_(definition.time_step),
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)) {
+  if (definition.filter) filter_.emplace(mesh_, elastic_, *definition.filter);
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
   forces_stale_ = true;
@@ -149,7 +150,8 @@ double Simulation::suggested_time_step() {
   refresh_forces();
   if (fixed_time_step_ > 0) return fixed_time_step_;
   if (quasistatic()) return std::numeric_limits<double>::infinity();
-  const double dt = time_step_.suggest(system_);
+  double dt = time_step_.suggest(system_);
+  if (filter_) dt = std::min(dt, filter_->options().time_step);
   if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
   // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
   activate_highest(system_.time + time_step_.horizon());
@@ -240,6 +242,7 @@ Measurements Simulation::measure() const {
 
 void Simulation::set_properties(std::int32_t region, const ElasticProperties& properties) {
   elastic_.set_properties(region, properties);
+  if (filter_) filter_->material_changed(region);
   time_step_.reset();
   forces_stale_ = true;
 }

@@ -14,7 +14,7 @@ enum class FilterSelection {
   spare_mass,  ///< what slow cells do not need of the mass of their nodes goes to the fast ones: never more
                ///< cells than `paper`, and from one ring of neighbours alone
   adaptive,    ///< cells that are too fast against all the mass of their nodes, then those that carry the
-             ///< energy of what is still too fast: the fewest, from the whole body
+               ///< energy of what is still too fast: the fewest, from the whole body
 };
 
 /// A tetrahedron that may have to be filtered.

@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/core/number_array.hpp"
+#include "evert/filter/selection.hpp"
 #include "evert/integrators/method.hpp"
 #include "evert/materials/damping.hpp"
 #include "evert/materials/lame.hpp"
@@ -282,6 +283,13 @@ struct IntegratorConfig {
   QuasistaticOptions quasistatic;     ///< of that method
 };
 
+/// Elements too fast for the step are filtered.
+struct FilterConfig {
+  double time_step = 0;  ///< [s] > 0
+  FilterSelection selection = FilterSelection::spare_mass;
+  double safety = 1.25;  ///< [-] ≥ 1
+};
+
 struct CheckpointConfig {
   std::optional<double> every_simulated;  ///< [s]
   std::optional<double> every_wall;       ///< [s]
@@ -298,6 +306,7 @@ struct SceneConfig {
   std::vector<ConstraintConfig> constraints;
   std::vector<EventConfig> events;
   IntegratorConfig integrator;
+  std::optional<FilterConfig> filter;
   std::optional<CheckpointConfig> checkpoint;
   std::vector<std::pair<std::string, std::string>> petsc;  ///< option (no dash) and value, in order
 
