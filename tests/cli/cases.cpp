@@ -513,8 +513,8 @@ const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
     for (const auto& group :
-         {good_runs, views, material_cases(), quasistatic_cases(), bad_commands, bad_scenes, bad_meshes,
-          cut_meshes(), fibre_cases(), failures, bad_output, bad_restarts})
+         {good_runs, views, material_cases(), quasistatic_cases(), filter_cases(), bad_commands, bad_scenes,
+          bad_meshes, cut_meshes(), fibre_cases(), failures, bad_output, bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();
