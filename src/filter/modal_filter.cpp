@@ -76,6 +76,7 @@ ModalFilter::ModalFilter(const ModalFilter& before, const DistributedMesh& mesh,
 
 void ModalFilter::material_changed(std::int32_t region) {
   const auto problem = filter_problem(mesh_, elastic_);
+  require_stiffness_to_be_left(problem, options_);
   NodalSums of_region(problem);
   for (const auto& entry : mesh_.cells)
     if (entry.region == region)

@@ -29,7 +29,7 @@ const std::vector<Case> cases{
     good("filter_adaptive", "run scene.yaml -set filter.selection=adaptive -set filter.safety=1.5"),
     good("filter_with_softening_and_stiffening",
          "run scene.yaml -set 'events=[{at: 5e-4, set: bodies.cube.material.youngs_modulus, to: 0}, "
-         "{at: 1e-3, set: bodies.cube.material.youngs_modulus, to: 1e7}]'"),
+         "{at: 1e-3, set: bodies.cube.material.youngs_modulus, to: 1.5e5}]'"),
     {.name = "filter_restart",
      .before = "run scene.yaml -set checkpoint.every_simulated=1e-3",
      .command = "run scene.yaml -restart out/checkpoint.h5 -set end_time=3e-3",
@@ -43,6 +43,9 @@ const std::vector<Case> cases{
 
     bad("filter_beyond_reach", "-set filter.time_step=1",
         {"filter.time_step: no filter can reach 1 s", "every element of 'cube'", "allowed is less than"}),
+    bad("filter_that_an_event_puts_beyond_reach",
+        "-set 'events=[{at: 1e-3, set: bodies.cube.material.youngs_modulus, to: 1e9}]'",
+        {"filter.time_step: no filter can reach 0.04 s", "every element of 'cube'"}),
     bad("filter_of_no_step", "-set filter.time_step=0", {"filter.time_step", "must be > 0"}),
     bad("filter_of_an_infinite_step", "-set filter.time_step=.inf", {"filter.time_step"}),
     bad("filter_of_a_word", "-set filter.time_step=auto", {"filter.time_step", "'auto'"}),

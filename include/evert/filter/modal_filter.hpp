@@ -36,6 +36,7 @@ class ModalFilter {
 
   /// Collective. After ElasticForces::set_properties of `region`: filters its cells and those next to them
   /// anew.
+  /// Throws UserError on all ranks when nothing of the new stiffness would be left.
   void material_changed(std::int32_t region);
 
   [[nodiscard]] const ModalFilterOptions& options() const { return options_; }
