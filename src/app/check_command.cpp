@@ -134,6 +134,20 @@ std::string motion_text(const ObstacleConfig& obstacle, const Simulation& simula
              : ", moving steadily";
 }
 
+std::string_view name_of(FilterSelection selection) {
+  return selection == FilterSelection::paper        ? "paper"
+         : selection == FilterSelection::spare_mass ? "spare_mass"
+                                                    : "adaptive";
+}
+
+void report_filter(Report& report, const ModalFilter& filter) {
+  const auto& options = filter.options();
+  report.line("filter",
+              formatted("%d of %zu tet4 are filtered for steps of %g s with a safety of %g, selection ",
+                        filter.filtered_cells(), filter.clamps().size(), options.time_step, options.safety) +
+                  std::string(name_of(options.selection)));
+}
+
 void report_surroundings(Report& report, const SceneConfig& scene, const Simulation& simulation) {
   const auto& mesh = simulation.mesh();
   for (const auto& obstacle : scene.obstacles) {
@@ -285,6 +299,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
   Report report(out);
   report.line("scene", scene.name + " (" + scene.file + ")");
   report_bodies(report, scene, built);
+  if (const auto& filter = built.simulation->filter()) report_filter(report, *filter);
   report_surroundings(report, scene, *built.simulation);
   report_cost(report, scene, *built.simulation);
   reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, solvers_of(*built.simulation));

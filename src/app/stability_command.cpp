@@ -160,7 +160,11 @@ int stability_command(MPI_Comm comm, const StabilityArguments& arguments, std::o
         << simulation.mesh().total_cells << " elements; held nodes count as free\n\n";
     write_stability(findings, "at rest", regions, out);
   }
-  if (deformed) {
+  if (deformed && simulation.filter()) {
+    if (root)
+      out << formatted("\nat t = %g s: not looked at: filtered elements have a stiffness at rest only\n",
+                       simulation.time());
+  } else if (deformed) {
     std::ranges::copy(simulation.positions().owned(), x.owned().begin());
     findings = findings_at(x, simulation);
     if (root) {

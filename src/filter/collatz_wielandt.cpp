@@ -97,7 +97,7 @@ double largest_ratio(Vec product, Vec x) {
 
 }  // namespace
 
-double collatz_wielandt_bound(Mat a, int iterations) {
+CollatzWielandt collatz_wielandt(Mat a, int iterations) {
   // Of x itself, kept so that it stays positive where a row of N has nothing but zeros.
   constexpr double kept = 1e-3;
   const auto norms = matrix_of_norms(a);
@@ -111,8 +111,10 @@ double collatz_wielandt_bound(Mat a, int iterations) {
     if (!(bound > 0 && std::isfinite(bound))) break;
     check(VecAXPBY(x.get(), 1 / bound, kept, product.get()));
   }
-  return bound * (1 + rounding);
+  return {bound * (1 + rounding), std::move(x)};
 }
+
+double collatz_wielandt_bound(Mat a, int iterations) { return collatz_wielandt(a, iterations).bound; }
 
 double step_limit(double squared_frequency) {
   if (!(squared_frequency > 0)) return std::numeric_limits<double>::infinity();

@@ -70,17 +70,20 @@ ElementLimits element_limits(const DistributedMesh& mesh, const ElasticForces& e
   ElementLimits limits{.own_masses = ElementLimits::PerCell(mesh.cells.size()),
                        .nodal_masses = ElementLimits::PerCell(mesh.cells.size())};
   std::array<double, 3> largest{};
-  for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
-    const auto& cells = mesh.cells[b];
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e)
+    for (auto* of_cells : {&limits.own_masses[e], &limits.nodal_masses[e]})
+      of_cells->resize(static_cast<std::size_t>(mesh.cells[e].size()));
+  for (std::size_t b = 0; b < elastic.blocks().size(); ++b) {
     const auto& block = elastic.blocks()[b];
     if (block == nullptr) continue;
+    const auto entry = elastic.entry_of(b);
+    const auto numbers = elastic.cells_in(b);
+    const auto& cells = mesh.cells[entry];
     const double density = elastic.density(cells.region);
-    limits.own_masses[b].resize(static_cast<std::size_t>(cells.size()));
-    limits.nodal_masses[b].resize(static_cast<std::size_t>(cells.size()));
     block->stiffness_matrices(
         x.local().data(), TangentForm::full, [&](LocalIndex cell, std::span<const double> matrix) {
           const auto of_cell = block->cell_nodes(cell);
-          const auto c = static_cast<std::size_t>(cell);
+          const auto c = static_cast<std::size_t>(numbers[static_cast<std::size_t>(cell)]);
           const auto own = own_masses(cells, c, of_cell.size(), density, mesh.rest_positions);
           Masses around{};
           for (std::size_t a = 0; a < of_cell.size(); ++a) {
@@ -88,10 +91,10 @@ ElementLimits element_limits(const DistributedMesh& mesh, const ElasticForces& e
             around[a] = nodal.local()[node];
             largest[2] = std::max(largest[2], nodal.local()[node + 1]);
           }
-          limits.own_masses[b][c] = largest_eigenvalue(matrix, of_cell.size(), own);
-          limits.nodal_masses[b][c] = largest_eigenvalue(matrix, of_cell.size(), around);
-          largest[0] = std::max(largest[0], limits.own_masses[b][c]);
-          largest[1] = std::max(largest[1], limits.nodal_masses[b][c]);
+          limits.own_masses[entry][c] = largest_eigenvalue(matrix, of_cell.size(), own);
+          limits.nodal_masses[entry][c] = largest_eigenvalue(matrix, of_cell.size(), around);
+          largest[0] = std::max(largest[0], limits.own_masses[entry][c]);
+          largest[1] = std::max(largest[1], limits.nodal_masses[entry][c]);
         });
   }
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);

@@ -34,13 +34,16 @@ std::vector<std::vector<double>> energy_shares(const DistributedMesh& mesh, cons
                                                const NodeField& x, const FastestMode& mode) {
   const auto u = displacements(mesh, elastic, mode);
   std::vector<std::vector<double>> shares(mesh.cells.size());
-  for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e)
+    shares[e].resize(static_cast<std::size_t>(mesh.cells[e].size()));
+  for (std::size_t b = 0; b < elastic.blocks().size(); ++b) {
     const auto& block = elastic.blocks()[b];
     if (block == nullptr) continue;
-    shares[b].resize(static_cast<std::size_t>(block->cells()));
+    auto& of_entry = shares[elastic.entry_of(b)];
+    const auto numbers = elastic.cells_in(b);
     block->stiffness_matrices(
         x.local().data(), TangentForm::full, [&](LocalIndex cell, std::span<const double> matrix) {
-          shares[b][static_cast<std::size_t>(cell)] =
+          of_entry[static_cast<std::size_t>(numbers[static_cast<std::size_t>(cell)])] =
               twice_energy(block->cell_nodes(cell), matrix, u.local()) / mode.squared_frequency;
         });
   }

@@ -115,4 +115,45 @@ double lanczos_estimate(const MassScaledStiffness& stiffness, int steps) {
   return std::max(solver.eigenvalues().maxCoeff(), 0.0);
 }
 
+std::vector<FastestMode> modes_above(const MassScaledStiffness& stiffness, double squared_frequency,
+                                     int steps) {
+  std::vector<VecHandle> basis;
+  std::vector<Vec> vectors;
+  std::vector<double> diagonal, below, along;
+  auto next = start_vector(stiffness);
+  for (int step = 0; step < steps; ++step) {
+    vectors.push_back(next.get());
+    basis.push_back(std::move(next));
+    check(VecDuplicate(vectors.back(), next.out()));
+    check(MatMult(stiffness.mat(), vectors.back(), next.get()));
+    // Against the whole basis and twice: modes that have been found must not come back by rounding.
+    const auto size = static_cast<PetscInt>(vectors.size());
+    along.resize(vectors.size());
+    for (int pass = 0; pass < 2; ++pass) {
+      check(VecMDot(next.get(), size, vectors.data(), along.data()));
+      if (pass == 0) diagonal.push_back(along.back());
+      for (double& share : along) share = -share;
+      check(VecMAXPY(next.get(), size, along.data(), vectors.data()));
+    }
+    PetscReal length = 0;
+    check(VecNormalize(next.get(), &length));
+    if (step + 1 == steps || !(length > 1e-12 * std::abs(diagonal.front()))) break;
+    below.push_back(length);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  const auto size = static_cast<Eigen::Index>(diagonal.size());
+  below.resize(diagonal.size() - 1);
+  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), size),
+                                Eigen::Map<const Eigen::VectorXd>(below.data(), size - 1));
+  std::vector<FastestMode> modes;
+  for (Eigen::Index k = size; k-- > 0 && solver.eigenvalues()[k] > squared_frequency;) {
+    auto& mode = modes.emplace_back(FastestMode{solver.eigenvalues()[k], {}});
+    check(VecDuplicate(vectors.front(), mode.scaled.out()));
+    check(VecSet(mode.scaled.get(), 0));
+    const Eigen::VectorXd shares = solver.eigenvectors().col(k);
+    check(VecMAXPY(mode.scaled.get(), static_cast<PetscInt>(size), shares.data(), vectors.data()));
+  }
+  return modes;
+}
+
 }  // namespace evert

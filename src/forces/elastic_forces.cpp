@@ -1,6 +1,7 @@
 #include "evert/forces/elastic_forces.hpp"
 
 #include "evert/core/collective.hpp"
+#include "evert/core/error.hpp"
 #include "evert/core/log.hpp"
 
 #include "consistent_bound.hpp"
@@ -59,7 +60,7 @@ double points_of(const DistributedMesh& mesh) {
 
 ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const ElasticProperties> properties,
                              MassForm mass)
-    : mesh_(mesh), halo_(mesh), scratch_(mesh) {
+    : mesh_(mesh), halo_(mesh), properties_(properties.begin(), properties.end()), scratch_(mesh) {
   const auto properties_of = [&](const LocalCells& cells) -> const ElasticProperties& {
     return properties[static_cast<std::size_t>(cells.region)];
   };
@@ -74,12 +75,11 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
     }
   });
 
-  for (const auto& of_region : properties) densities_.push_back(of_region.density);
-  masses_ = lumped(densities_);
+  masses_ = lumped(densities());
   balance_masses(mesh_, halo_, masses_, blocks_);
   if (mass == MassForm::consistent) {
     lumped_over_consistent_ = lumped_over_consistent(mesh_);
-    consistent_mass_ = std::make_unique<ConsistentMass>(mesh_, halo_, densities_);
+    consistent_mass_ = std::make_unique<ConsistentMass>(mesh_, halo_, densities());
     bound_consistent_step();
   }
 
@@ -96,7 +96,7 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
 /// Of two bounds of λmax(M⁻¹K) the smaller: that of lumped masses times the ratio of these, and the largest
 /// eigenvalue of any cell by itself. docs/design/time-stepping.md
 void ElasticForces::bound_consistent_step() {
-  const double of_cells = consistent_over_block_stiffness(mesh_, densities_, blocks_);
+  const double of_cells = consistent_over_block_stiffness(mesh_, densities(), blocks_);
   step_over_lumped_ = 1 / std::sqrt(std::min(lumped_over_consistent_, of_cells));
 }
 
@@ -108,6 +108,12 @@ void ElasticForces::make_mass_damping() {
   consistent_mass_damping_ = std::make_unique<ConsistentMass>(mesh_, halo_, damped_densities_);
   const auto sums = consistent_mass_damping_->row_sums();
   mass_damping_.assign(sums.begin(), sums.end());
+}
+
+std::vector<double> ElasticForces::densities() const {
+  std::vector<double> per_region;
+  for (const auto& of_region : properties_) per_region.push_back(of_region.density);
+  return per_region;
 }
 
 std::vector<double> ElasticForces::lumped(std::span<const double> densities) {
@@ -230,15 +236,81 @@ double ElasticForces::max_strain_rate(const NodeField& x, const NodeField& v) co
   return largest;
 }
 
-void ElasticForces::min_stretch(const NodeField& x, std::size_t block, std::span<double> per_cell) const {
+void ElasticForces::min_stretch(const NodeField& x, std::size_t entry, std::span<double> per_cell) const {
   const PhaseScope scope(Phase::stretch_svd);
-  if (blocks_[block] != nullptr) blocks_[block]->min_stretch(x.local().data(), per_cell);
+  if (separations_.empty()) {
+    if (blocks_[entry] != nullptr) blocks_[entry]->min_stretch(x.local().data(), per_cell);
+    return;
+  }
+  std::vector<double> of_block;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (blocks_[b] == nullptr || entry_of(b) != entry) continue;
+    const auto cells = cells_in(b);
+    of_block.resize(cells.size());
+    blocks_[b]->min_stretch(x.local().data(), of_block);
+    for (std::size_t i = 0; i < cells.size(); ++i) per_cell[static_cast<std::size_t>(cells[i])] = of_block[i];
+  }
+}
+
+std::size_t ElasticForces::entry_of(std::size_t block) const {
+  return block < mesh_.cells.size() ? block : separations_[block - mesh_.cells.size()].entry;
+}
+
+std::vector<LocalIndex> ElasticForces::cells_in(std::size_t block) const {
+  if (block >= mesh_.cells.size()) return separations_[block - mesh_.cells.size()].cells;
+  std::vector<bool> separate(static_cast<std::size_t>(mesh_.cells[block].size()));
+  for (const auto& [entry, cells] : separations_)
+    if (entry == block)
+      for (const LocalIndex cell : cells) separate[static_cast<std::size_t>(cell)] = true;
+  std::vector<LocalIndex> rest;
+  for (LocalIndex cell = 0; cell < mesh_.cells[block].size(); ++cell)
+    if (!separate[static_cast<std::size_t>(cell)]) rest.push_back(cell);
+  return rest;
+}
+
+bool ElasticForces::is_of_region(std::size_t block, std::int32_t region) const {
+  return blocks_[block] != nullptr && mesh_.cells[entry_of(block)].region == region;
+}
+
+std::unique_ptr<ElasticBlock> ElasticForces::make_block(std::size_t entry,
+                                                        std::span<const LocalIndex> cells) const {
+  if (cells.empty()) return nullptr;
+  const auto& all = mesh_.cells[entry];
+  const auto& properties = properties_[static_cast<std::size_t>(all.region)];
+  const auto nodes_a_cell = static_cast<std::size_t>(node_count(all.type));
+  LocalCells chosen{.type = all.type, .region = all.region, .nodes = {}, .global_ids = {}};
+  for (const LocalIndex cell : cells) {
+    const auto nodes =
+        std::span(all.nodes).subspan(nodes_a_cell * static_cast<std::size_t>(cell), nodes_a_cell);
+    chosen.nodes.insert(chosen.nodes.end(), nodes.begin(), nodes.end());
+    if (!all.vectors.empty()) chosen.vectors.push_back(all.vectors[static_cast<std::size_t>(cell)]);
+    chosen.interior += cell < all.interior ? 1 : 0;
+  }
+  return make_elastic_block(cells_of(chosen, properties.density), mesh_.rest_positions, properties.material,
+                            properties.damping, properties.precision);
+}
+
+void ElasticForces::separate(std::vector<SeparateCells> separate_cells) {
+  EVERT_ASSERT(consistent_mass_ == nullptr, std::to_string(separate_cells.size()));
+  for (auto& [entry, cells, block] : separate_cells) {
+    for (std::size_t s = separations_.size(); s-- > 0;) {
+      if (separations_[s].entry != entry) continue;
+      separations_.erase(separations_.begin() + static_cast<std::ptrdiff_t>(s));
+      blocks_.erase(blocks_.begin() + static_cast<std::ptrdiff_t>(mesh_.cells.size() + s));
+    }
+    if (!cells.empty()) {
+      separations_.push_back({entry, std::move(cells)});
+      blocks_.push_back(std::move(block));
+    }
+    blocks_[entry] = make_block(entry, cells_in(entry));
+  }
+  balance_masses(mesh_, halo_, masses_, blocks_);
 }
 
 void ElasticForces::set_properties(std::int32_t region, const ElasticProperties& properties) {
+  properties_[static_cast<std::size_t>(region)] = properties;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    if (blocks_[i] != nullptr && mesh_.cells[i].region == region)
-      blocks_[i]->set_material(properties.material, properties.damping);
+    if (is_of_region(i, region)) blocks_[i]->set_material(properties.material, properties.damping);
   balance_masses(mesh_, halo_, masses_, blocks_);
   if (consistent_mass_ != nullptr) bound_consistent_step();
   if (damped_densities_.empty()) return;
@@ -249,7 +321,7 @@ void ElasticForces::set_properties(std::int32_t region, const ElasticProperties&
 
 void ElasticForces::set_activation(std::int32_t region, double activation) {
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    if (blocks_[i] != nullptr && mesh_.cells[i].region == region) blocks_[i]->set_activation(activation);
+    if (is_of_region(i, region)) blocks_[i]->set_activation(activation);
 }
 
 std::size_t ElasticForces::memory() const {

@@ -19,15 +19,17 @@ using Weights = std::vector<std::vector<double>>;
 /// What each node of each cell needs at first: the root of Σ_q V |g_a|² over its shape gradient g_a, against
 /// the largest of the cell. The largest eigenvalue of a flat cell goes with Σ_a |g_a|²/m_a, which is least,
 /// the sum of the masses given, where m_a goes with |g_a|.
-std::vector<double> gradient_weights(const LocalCells& cells, std::span<const Vec3d> rest_positions) {
+std::vector<double> gradient_weights(const ElasticBlock& block, std::span<const Vec3d> rest_positions) {
   constexpr double least = 0.01;  // every node moves with some of the cell
   constexpr double alike = 0.5;   // well-shaped cells do as well with equal shares
-  std::vector<double> weights(cells.nodes.size());
-  with_reference_element(cells.type, [&](const auto& element) {
+  std::vector<double> weights(static_cast<std::size_t>(block.cells()) *
+                              static_cast<std::size_t>(node_count(block.type())));
+  with_reference_element(block.type(), [&](const auto& element) {
     const auto nodes = static_cast<std::size_t>(element.nodes);
-    for (std::size_t first = 0; first < weights.size(); first += nodes) {
-      const auto cell = std::span(cells.nodes).subspan(first, nodes);
-      const auto of_cell = std::span(weights).subspan(first, nodes);
+    for (LocalIndex c = 0; c < block.cells(); ++c) {
+      const auto numbers = block.cell_nodes(c);
+      const std::span<const LocalIndex> cell(numbers.begin(), nodes);
+      const auto of_cell = std::span(weights).subspan(nodes * static_cast<std::size_t>(c), nodes);
       for (std::size_t q = 0; q < static_cast<std::size_t>(element.points); ++q) {
         const Mat3d jacobian = rest_jacobian(element, q, cell, rest_positions);
         const Mat3d to_reference = inverse(jacobian);
@@ -86,7 +88,7 @@ void balance_masses(const DistributedMesh& mesh, const Halo& halo, std::span<con
   NodeField nodal(mesh);
   Weights weights(blocks.size());
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    if (blocks[b] != nullptr) weights[b] = gradient_weights(mesh.cells[b], mesh.rest_positions);
+    if (blocks[b] != nullptr) weights[b] = gradient_weights(*blocks[b], mesh.rest_positions);
   for (int round = 0; round <= rounds; ++round) {
     // Whose λ_e is larger than its neighbours' gets more of their mass. Soft cells of E = 0 have none.
     if (round > 0)

@@ -22,15 +22,16 @@ double damping_time(const Damping& damping, const Lame& lame) {
                   (2 * damping.beta + 3 * damping.alpha) / (2 * lame.mu + 3 * lame.lambda));
 }
 
-/// max(1, σ1²) over the points of this rank's `cells`: the models that damp the rate of Green's strain grow
-/// with the square of the stretch.
-double largest_squared_stretch(const LocalCells& cells, std::span<const Vec3d> rest_positions,
+/// max(1, σ1²) over the points of a block: the models that damp the rate of Green's strain grow with the
+/// square of the stretch.
+double largest_squared_stretch(const ElasticBlock& block, std::span<const Vec3d> rest_positions,
                                const NodeField& x) {
   double largest = 1;
-  with_reference_element(cells.type, [&](const auto& element) {
+  with_reference_element(block.type(), [&](const auto& element) {
     const auto nodes = static_cast<std::size_t>(element.nodes);
-    for (std::size_t first = 0; first < cells.nodes.size(); first += nodes) {
-      const auto cell = std::span(cells.nodes).subspan(first, nodes);
+    for (LocalIndex c = 0; c < block.cells(); ++c) {
+      const auto numbers = block.cell_nodes(c);
+      const std::span<const LocalIndex> cell(numbers.begin(), nodes);
       for (std::size_t q = 0; q < static_cast<std::size_t>(element.points); ++q) {
         const Mat3d to_reference = inverse(rest_jacobian(element, q, cell, rest_positions));
         Mat3d f{};
@@ -49,8 +50,15 @@ Lame moduli_of(const ElasticBlock& block) {
 
 bool is_soft_but_damped(const ElasticBlock& block) { return block.damped() && !(moduli_of(block).mu > 0); }
 
+/// Damping that is not of the strains that a filter has lowered, once these are mixed with others: that of
+/// separate cells with models that damp the rate of Green's strain.
+bool escapes_filter(const ElasticForces& elastic, std::size_t block) {
+  return elastic.entry_of(block) != block && elastic.blocks()[block]->damped() &&
+         elastic.blocks()[block]->damping().model != DampingModel::rotated;
+}
+
 /// λmax(M⁻¹C) from the diagonal blocks of C alone, n of which, n the nodes of a cell, are above C: for cells
-/// without elasticity to compare with.
+/// whose elasticity is no measure of it.
 double rate_from_diagonal(const System& system) {
   NodeField normal(system.mesh), shear(system.mesh);
   system.elastic.damping_diagonal(normal, shear);
@@ -91,8 +99,9 @@ double explicitly_damped_step(const System& system) {
   const auto& mesh = system.mesh;
   const auto blocks = system.elastic.blocks();
   std::array<double, 2> rates{mass_damping_rate(system), 0};
-  for (const auto& block : blocks)
-    if (block != nullptr && is_soft_but_damped(*block)) rates[1] = 1;
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (blocks[b] != nullptr && (is_soft_but_damped(*blocks[b]) || escapes_filter(system.elastic, b)))
+      rates[1] = 1;
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), 2, MPI_DOUBLE, MPI_MAX, mesh.comm);
   const bool by_diagonal = rates[1] > 0;
   const double common = by_diagonal ? rate_from_diagonal(system) : rates[0];
@@ -105,7 +114,7 @@ double explicitly_damped_step(const System& system) {
       const auto& damping = blocks[b]->damping();
       const double stretch = damping.model == DampingModel::rotated
                                  ? 1
-                                 : largest_squared_stretch(mesh.cells[b], mesh.rest_positions, system.x);
+                                 : largest_squared_stretch(*blocks[b], mesh.rest_positions, system.x);
       rate += damping_time(damping, moduli_of(*blocks[b])) * stretch * frequency * frequency;
     }
     step = std::min(step, step_of(rate, frequency));

@@ -105,7 +105,7 @@ void resolve_constraints(SceneConfig& scene, const Value& root) {
 /// The keys that a checkpoint depends on.
 std::string identity_of(const Value& root) {
   Value kept{.kind = Value::Kind::map};
-  for (const auto* key : {"name", "gravity", "bodies", "obstacles", "constraints", "events"})
+  for (const auto* key : {"name", "gravity", "bodies", "obstacles", "constraints", "events", "filter"})
     if (const auto* value = root.find(key)) kept.set(key, *value);
   return canonical_text(kept);
 }

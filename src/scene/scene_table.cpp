@@ -110,6 +110,27 @@ const Table<IntegratorConfig>& integrator_table() {
   return table;
 }
 
+const Table<FilterConfig>& filter_table() {
+  static const auto table =
+      Table<FilterConfig>(
+          "Softens the directions in which bad tetrahedra vibrate too fast for the step, and nothing else.")
+          .required("time_step", &FilterConfig::time_step, number("s", above(0)), "1e-3",
+                    "The step to be possible; integrator.time_step is at most as large.")
+          .optional("selection", &FilterConfig::selection,
+                    one_of<FilterSelection>(
+                        {{"paper", FilterSelection::paper, "elements too fast for their own mass"},
+                         {"spare_mass", FilterSelection::spare_mass,
+                          "those too fast for what their neighbours leave them of the mass; never more"},
+                         {"adaptive", FilterSelection::adaptive,
+                          "the fewest, found from the vibrations of the whole body before the run"}}),
+                    "adaptive", "Which elements are filtered. All keep the whole body below the limit.")
+          .optional("safety", &FilterConfig::safety, number("-", at_least(1)), "1.5",
+                    "How much larger a step the filtered body takes at rest: strain makes it stiffer. Below "
+                    "1.25 it "
+                    "may blow up.");
+  return table;
+}
+
 const Table<CheckpointConfig>& checkpoint_table() {
   static const auto table =
       Table<CheckpointConfig>("When the state is saved to restart from.")
@@ -156,6 +177,30 @@ void expect_no_rigid_bodies_without_solve(const SceneConfig& scene, const Value&
   }
 }
 
+/// Throws for a filter that the steps make nothing of.
+void check_filter(const SceneConfig& scene, const Value& map) {
+  if (!scene.filter) return;
+  const auto refuse = [&](const std::string& why) { fail(*map.find("filter"), "filter", why); };
+  if (scene.integrator.method == IntegrationMethod::quasistatic)
+    refuse(
+        "has no effect with 'integrator.method: quasistatic', which has no stable step: it goes with "
+        "'newmark'");
+  if (scene.integrator.method == IntegrationMethod::explicit_euler)
+    refuse(
+        "is not possible with 'integrator.method: explicit_euler', which no filter makes stable: it goes "
+        "with 'newmark'");
+  if (scene.integrator.mass == MassForm::consistent)
+    refuse(
+        "is not possible with 'integrator.mass: consistent': elements are filtered against masses of "
+        "nodes, 'lumped'");
+  if (scene.integrator.time_step.value_or(0) > scene.filter->time_step) {
+    const auto& value = *map.find("integrator")->find("time_step");
+    fail(value, "integrator.time_step",
+         shown(value) +
+             " is not allowed: must be at most filter.time_step, for which the elements are filtered");
+  }
+}
+
 void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*path*/) {
   if (scene.output.directory.empty()) scene.output.directory = default_directory(scene.name);
   if (scene.integrator.time_step)
@@ -172,6 +217,7 @@ void finish_scene(SceneConfig& scene, const Value& map, const std::string& /*pat
          "is not possible with 'integrator.mass: consistent': impacts and friction need masses of nodes, "
          "'lumped'");
   expect_no_rigid_bodies_without_solve(scene, map);
+  check_filter(scene, map);
   if (scene.bodies.empty()) fail(*map.find("bodies"), "bodies", "must name at least one body");
   for (const auto& [name, value] : scene.petsc) {
     const auto& entry = *map.find("petsc")->find(name);
@@ -207,6 +253,8 @@ const Table<SceneConfig>& scene_table() {
                     "[{at: 0.5, set: gravity, to: [0, 0, 0]}]", "Values that change at a time.")
           .optional("integrator", &SceneConfig::integrator, table_of(integrator_table()), "{time_step: auto}",
                     "How time advances.")
+          .optional("filter", &SceneConfig::filter, table_of(filter_table()), "{time_step: 1e-3}",
+                    "Without it, every element is as stiff as it is.")
           .optional("checkpoint", &SceneConfig::checkpoint, table_of(checkpoint_table()), "{every_wall: 600}",
                     "Without it, no checkpoints.")
           .optional("petsc", &SceneConfig::petsc, scalars_by_name("option: value"),

@@ -87,6 +87,18 @@ std::vector<std::unique_ptr<Obstacle>> possible_obstacles(SimulationDefinition& 
   return std::move(definition.obstacles);
 }
 
+/// `options` with the stability constant of the integrator.
+ModalFilterOptions filter_for(ModalFilterOptions options, const Integrator& integrator) {
+  options.stability_constant =
+      std::visit([](const auto& chosen) { return std::remove_cvref_t<decltype(chosen)>::stability_constant; },
+                 integrator);
+  if (!(options.stability_constant > 0))
+    throw UserError("filter: no filter makes explicit_euler stable; it goes with newmark");
+  if (std::isinf(options.stability_constant))
+    throw UserError("filter: has no effect on states of rest, which no step is too large for");
+  return options;
+}
+
 /// What moves, this rank's share.
 struct Motion {
   double kinetic_energy = 0;
@@ -142,6 +154,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
+  if (definition.filter) filter_.emplace(mesh_, elastic_, filter_for(*definition.filter, integrator_));
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
   forces_stale_ = true;
@@ -223,7 +236,8 @@ double Simulation::suggested_time_step() {
         return &std::remove_cvref_t<decltype(integrator)>::stable_step;
       },
       integrator_);
-  const double dt = time_step_.suggest(system_, limit);
+  double dt = time_step_.suggest(system_, limit);
+  if (filter_) dt = std::min(dt, filter_->options().time_step);
   if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
   // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
   activate_highest(system_.time + time_step_.horizon());
@@ -335,6 +349,7 @@ std::vector<ObstacleImpulse> Simulation::obstacle_impulses() const {
 
 void Simulation::set_properties(std::int32_t region, const ElasticProperties& properties) {
   elastic_.set_properties(region, properties);
+  if (filter_) filter_->material_changed(region);
   time_step_.reset();
   forces_stale_ = true;
 }

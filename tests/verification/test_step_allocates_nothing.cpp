@@ -75,6 +75,9 @@ obstacles:
 )",
                            overrides);
   auto& simulation = *scene.simulation;
+  if (simulation.filter()) {
+    EXPECT_GT(simulation.filter()->filtered_cells(), 0);
+  }
   const auto steps = [&](int count) {
     LocalIndex contacts = 0;
     for (int step = 0; step < count; ++step)
@@ -135,6 +138,11 @@ TEST(Step, AllocatesNothingWithExplicitDamping) {
                     .allocations,
                 0)
           << method << ", " << damping;
+}
+
+TEST(Step, AllocatesNothingWithFilteredElements) {
+  for (const char* filter : {"filter={time_step: 3e-3}", "filter={time_step: 3e-3, selection: adaptive}"})
+    EXPECT_EQ(counts_of_steps({}, {filter}).allocations, 0) << filter;  // of all cells, and of a part
 }
 
 TEST(Step, IsSeenToAssembleWhereToldTo) {

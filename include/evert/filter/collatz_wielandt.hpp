@@ -11,6 +11,13 @@ namespace evert {
 /// (Nx)_i / x_i for every positive x, which iterations x ← N x make smaller and smaller.
 [[nodiscard]] double collatz_wielandt_bound(Mat a, int iterations = 10);
 
+/// The same with the x of the last iteration, one a node: after many it is large where the bound is not met.
+struct CollatzWielandt {
+  double bound = 0;
+  VecHandle weights;
+};
+[[nodiscard]] CollatzWielandt collatz_wielandt(Mat a, int iterations);
+
 /// The step [s] at which explicit elastic forces without damping stop being stable, of a squared frequency
 /// [1/s²]: 2/ω; infinity for 0 and below.
 [[nodiscard]] double step_limit(double squared_frequency);

@@ -1,6 +1,8 @@
 #pragma once
 #include "evert/filter/mass_scaled_stiffness.hpp"
 
+#include <vector>
+
 namespace evert {
 
 /// The largest eigenvalue of a matrix and its vector, of length 1.
@@ -17,5 +19,11 @@ struct FastestMode {
 /// Collective. What `steps` steps of Lanczos from a fixed start find of the largest eigenvalue: never more
 /// than it, and within a per cent after some twenty. An estimate, no bound.  PHYSICS 9
 [[nodiscard]] double lanczos_estimate(const MassScaledStiffness& stiffness, int steps = 20);
+
+/// Collective. What `steps` steps of Lanczos from a fixed start find of the modes above `squared_frequency`
+/// [1/s²]: vectors whose Rayleigh quotient is above it, of length 1 and orthogonal, the fastest first. None
+/// where none of the modes is above; with few steps some may be missed.
+[[nodiscard]] std::vector<FastestMode> modes_above(const MassScaledStiffness& stiffness,
+                                                   double squared_frequency, int steps);
 
 }  // namespace evert

@@ -23,6 +23,13 @@ struct ElasticProperties {
   std::optional<double> mass_proportional_damping{};
 };
 
+/// Cells of one entry of DistributedMesh::cells whose forces are of another kind than those of its region.
+struct SeparateCells {
+  std::size_t entry = 0;
+  std::vector<LocalIndex> cells{};        ///< their numbers in the entry, ascending
+  std::unique_ptr<ElasticBlock> block{};  ///< of these cells in this order; null without cells
+};
+
 class ElasticForces {
  public:
   /// Collective. One ElasticBlock per entry of `mesh.cells`, with `properties` of its region; a UserError of
@@ -61,8 +68,8 @@ class ElasticForces {
   [[nodiscard]] LocalIndex inverted_points(const NodeField& x) const;
   [[nodiscard]] StableStep stable_step(const NodeField& x) const;
   [[nodiscard]] double max_strain_rate(const NodeField& x, const NodeField& v) const;
-  /// Smallest signed stretch per cell of block `block`.
-  void min_stretch(const NodeField& x, std::size_t block, std::span<double> per_cell) const;
+  /// Smallest signed stretch per cell of an entry of DistributedMesh::cells.
+  void min_stretch(const NodeField& x, std::size_t entry, std::span<double> per_cell) const;
 
   /// Lumped masses of the owned nodes [kg], whatever M is.
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
@@ -76,21 +83,38 @@ class ElasticForces {
   [[nodiscard]] const ConsistentMass* consistent_mass_damping() const {
     return consistent_mass_damping_.get();
   }
+  /// First one per entry of DistributedMesh::cells, null where a rank has no cells of it or all are separate;
+  /// then those of separate cells.
   [[nodiscard]] std::span<const std::unique_ptr<ElasticBlock>> blocks() const { return blocks_; }
+  /// The entry of DistributedMesh::cells that block number `block` has cells of.
+  [[nodiscard]] std::size_t entry_of(std::size_t block) const;
+  /// Which cells of that entry they are, in the order of the block.
+  [[nodiscard]] std::vector<LocalIndex> cells_in(std::size_t block) const;
   /// Of a region, at rest [kg/m^3].
-  [[nodiscard]] double density(std::int32_t region) const {
-    return densities_[static_cast<std::size_t>(region)];
-  }
+  [[nodiscard]] double density(std::int32_t region) const { return properties(region).density; }
   [[nodiscard]] const Halo& halo() const { return halo_; }
+  /// Of a region at present.
+  [[nodiscard]] const ElasticProperties& properties(std::int32_t region) const {
+    return properties_[static_cast<std::size_t>(region)];
+  }
   /// Collective. Changes the material of every block of `region`; call update() afterwards.
   void set_properties(std::int32_t region, const ElasticProperties& properties);
   /// Not collective. Sets the activation of the muscle of `region`, in [0, 1]; call update() afterwards. Does
   /// not allocate.
   void set_activation(std::int32_t region, double activation);
+  /// Collective. Takes cells out of the block of their entry and gives them to one of their own, and earlier
+  /// ones of the listed entries back; entries that no rank lists stay as they are. Masses stay those of all
+  /// cells. Masses must be lumped. Call update() afterwards.
+  void separate(std::vector<SeparateCells> separate_cells);
   /// Bytes of element data on this rank.
   [[nodiscard]] std::size_t memory() const;
 
  private:
+  [[nodiscard]] bool is_of_region(std::size_t block, std::int32_t region) const;
+  /// Of the cells of an entry that are in `cells`, ascending.
+  [[nodiscard]] std::unique_ptr<ElasticBlock> make_block(std::size_t entry,
+                                                         std::span<const LocalIndex> cells) const;
+  [[nodiscard]] std::vector<double> densities() const;  // per region
   /// Collective. What the cells contribute to the owned nodes, each with the density of its region.
   [[nodiscard]] std::vector<double> lumped(std::span<const double> densities);
   /// add_damping with what else is to be done while ghosts are at hand.
@@ -103,10 +127,14 @@ class ElasticForces {
 
   const DistributedMesh& mesh_;
   Halo halo_;
-  std::vector<std::unique_ptr<ElasticBlock>>
-      blocks_;  // parallel to mesh_.cells; null where a rank has no cells
+  std::vector<ElasticProperties> properties_;          // per region
+  std::vector<std::unique_ptr<ElasticBlock>> blocks_;  // see blocks()
+  struct Separation {
+    std::size_t entry;
+    std::vector<LocalIndex> cells;
+  };
+  std::vector<Separation> separations_;  // of the blocks behind those of the entries
   std::vector<double> masses_;
-  std::vector<double> densities_;         // per region
   std::vector<double> damped_densities_;  // ρ a per region [kg/(m^3 s)]; empty when none has an a
   std::vector<double> mass_damping_;
   std::unique_ptr<ConsistentMass> consistent_mass_, consistent_mass_damping_;  // where asked for

@@ -14,6 +14,9 @@ namespace evert {
 /// docs/design/time-stepping.md
 class ExplicitEuler {
  public:
+  /// c: without damping, vibrations of frequency ω are stable up to ωΔt = c: none are.
+  static constexpr double stability_constant = 0;
+
   /// Collective.
   explicit ExplicitEuler(const System& system);
 

@@ -15,6 +15,9 @@ namespace evert {
 /// Largest stable step for a mode of frequency ω and damping ratio ξ: 2(√(ξ²+1)+ξ)/ω.
 class Newmark {
  public:
+  /// c: without damping, vibrations of frequency ω are stable up to ωΔt = c.
+  static constexpr double stability_constant = 2;
+
   /// Collective.
   explicit Newmark(const System& system);
 

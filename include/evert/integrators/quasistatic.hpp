@@ -15,6 +15,9 @@ namespace evert {
 /// rest, states of less energy are looked for around them.  docs/design/quasistatic.md
 class Quasistatic {
  public:
+  /// c of the others: no step is too large.
+  static constexpr double stability_constant = std::numeric_limits<double>::infinity();
+
   /// Collective.
   Quasistatic(const System& system, const QuasistaticOptions& options);
 

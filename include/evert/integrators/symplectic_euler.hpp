@@ -15,6 +15,9 @@ namespace evert {
 /// docs/design/time-stepping.md
 class SymplecticEuler {
  public:
+  /// c: without damping, vibrations of frequency ω are stable up to ωΔt = c.
+  static constexpr double stability_constant = 2;
+
   /// Collective.
   explicit SymplecticEuler(const System& system);
 

@@ -16,6 +16,9 @@ namespace evert {
 /// The latter is never less than 2 (√(ξ² + 1) − ξ), which `auto` takes.  docs/design/time-stepping.md
 class Verlet {
  public:
+  /// c: without damping, vibrations of frequency ω are stable up to ωΔt = c.
+  static constexpr double stability_constant = 2;
+
   /// Collective.
   explicit Verlet(const System& system);
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/contact/keyframed_motion.hpp"
 #include "evert/core/number_array.hpp"
+#include "evert/filter/selection.hpp"
 #include "evert/forces/mass_form.hpp"
 #include "evert/integrators/method.hpp"
 #include "evert/materials/damping.hpp"
@@ -267,6 +268,13 @@ struct IntegratorConfig {
   QuasistaticOptions quasistatic;     ///< of that method
 };
 
+/// Elements too fast for the step are filtered.
+struct FilterConfig {
+  double time_step = 0;  ///< [s] > 0
+  FilterSelection selection = FilterSelection::spare_mass;
+  double safety = 1.25;  ///< [-] ≥ 1
+};
+
 struct CheckpointConfig {
   std::optional<double> every_simulated;  ///< [s]
   std::optional<double> every_wall;       ///< [s]
@@ -283,6 +291,7 @@ struct SceneConfig {
   std::vector<ConstraintConfig> constraints;
   std::vector<EventConfig> events;
   IntegratorConfig integrator;
+  std::optional<FilterConfig> filter;
   std::optional<CheckpointConfig> checkpoint;
   std::vector<std::pair<std::string, std::string>> petsc;  ///< option (no dash) and value, in order
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/contact/collisions.hpp"
 #include "evert/contact/prescribed_motion.hpp"
+#include "evert/filter/modal_filter.hpp"
 #include "evert/forces/elastic_forces.hpp"
 #include "evert/integrators/method.hpp"
 #include "evert/integrators/time_step.hpp"
@@ -8,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace evert {
@@ -36,6 +38,7 @@ struct SimulationDefinition {
   QuasistaticOptions quasistatic;    ///< of that method
   double fixed_time_step = 0;        ///< [s]; 0: chosen by TimeStepControl
   TimeStepOptions time_step;
+  std::optional<ModalFilterOptions> filter;  ///< empty: no element is filtered
 };
 
 }  // namespace evert

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -53,7 +54,8 @@ class Simulation {
   /// The same to exactly `end_time` [s], in one step.
   StepReport step_to(double end_time);
   /// The largest step that is stable and accurate now [s], infinity where nothing limits it (as in a
-  /// quasistatic simulation); the fixed step where the scene names one.
+  /// quasistatic simulation), with a filter at most the step that it filters for; the fixed step where the
+  /// scene names one.
   [[nodiscard]] double suggested_time_step();
   /// The time of the next event or keyframe of an activation [s], or infinity. Not collective.
   [[nodiscard]] double next_event() const;
@@ -80,6 +82,7 @@ class Simulation {
   [[nodiscard]] const NodeField& positions() const { return system_.x; }   ///< [m]
   [[nodiscard]] const NodeField& velocities() const { return system_.v; }  ///< [m/s]
   [[nodiscard]] const ElasticForces& elastic() const { return elastic_; }
+  [[nodiscard]] const std::optional<ModalFilter>& filter() const { return filter_; }
   /// Smallest signed principal stretch per owned cell, `block` counting as in DistributedMesh::cells.
   void min_stretch(std::size_t block, std::span<double> per_cell) const;
 
@@ -125,6 +128,7 @@ class Simulation {
 
   DistributedMesh mesh_;
   ElasticForces elastic_;
+  std::optional<ModalFilter> filter_;
   Collisions collisions_;
   RigidDynamics rigid_;
   PrescribedMotion prescribed_;

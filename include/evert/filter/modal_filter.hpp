@@ -1,0 +1,66 @@
+#pragma once
+#include "evert/filter/selection.hpp"
+
+namespace evert {
+
+struct ModalFilterOptions {
+  double time_step = 0;  ///< [s] that steps may have
+  double safety =
+      1.25;  ///< [-] ≥ 1: how much larger a step the filtered body takes at rest; strain stiffens it
+  FilterSelection selection = FilterSelection::spare_mass;
+  double stability_constant = 2;  ///< c of the integrator: ωΔt ≤ c is stable without damping
+
+  /// (c/Δt)² that no squared frequency of the filtered body exceeds at rest [1/s²]; implicit damping only
+  /// raises c.
+  [[nodiscard]] double limit() const {
+    const double frequency = stability_constant / (safety * time_step);
+    return frequency * frequency;
+  }
+};
+
+/// What a change of topology leaves of the cells of a rank; cells keep their rank.
+struct TopologyChange {
+  std::vector<LocalIndex>
+      origins;           ///< per cell now, in the order of FilterProblem::cells: its number before, −1: new
+  ChangedNodes changed;  ///< nodes now, also those of cells that went
+};
+
+/// Keeps the fast vibrations of bad elements below what a step allows: the cells that need it leave the
+/// blocks of their regions for filtered ones.  paper B, section 4; PHYSICS 9
+class ModalFilter {
+ public:
+  /// Collective. Filters the cells of `elastic`. Throws UserError on all ranks for consistent masses, for
+  /// cells other than tet4, for models with fibres, and for a step at which nothing of a region's stiffness
+  /// would be left.
+  ModalFilter(const DistributedMesh& mesh, ElasticForces& elastic, const ModalFilterOptions& options);
+
+  /// Collective. Of a body that has been cut: `mesh` and `elastic` are new, and cells away from the change
+  /// keep the filters that they have in `before`.
+  ModalFilter(const ModalFilter& before, const DistributedMesh& mesh, ElasticForces& elastic,
+              const TopologyChange& change);
+
+  /// Collective. After ElasticForces::set_properties of `region`: filters its cells and those next to them
+  /// anew.
+  /// Throws UserError on all ranks when nothing of the new stiffness would be left.
+  void material_changed(std::int32_t region);
+
+  [[nodiscard]] const ModalFilterOptions& options() const { return options_; }
+  /// Of this rank, entry after entry of DistributedMesh::cells.
+  [[nodiscard]] const CellClamps& clamps() const { return clamps_; }
+  [[nodiscard]] LocalIndex filtered_cells() const;
+  /// Cells of this rank whose vibrations the last change has made it look at.
+  [[nodiscard]] LocalIndex looked_at() const { return looked_at_; }
+
+ private:
+  /// Collective. Selects anew, and makes the blocks of the entries that are not as the clamps `in_force` say.
+  void update(const FilterProblem& problem, const ChangedNodes& changed, const CellClamps& in_force);
+  [[nodiscard]] SeparateCells filtered_part(std::size_t entry, std::span<const CellClamp> clamps) const;
+
+  const DistributedMesh& mesh_;
+  ElasticForces& elastic_;
+  ModalFilterOptions options_;
+  CellClamps clamps_;
+  LocalIndex looked_at_ = 0;
+};
+
+}  // namespace evert

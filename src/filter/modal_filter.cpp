@@ -1,0 +1,136 @@
+#include "evert/filter/modal_filter.hpp"
+
+#include "evert/core/error.hpp"
+#include "evert/core/formatted.hpp"
+
+#include "nodal_sums.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evert {
+namespace {
+
+/// Collective. Throws UserError unless masses are lumped and every cell is a tet4 of an isotropic model.
+void require_what_can_be_filtered(const DistributedMesh& mesh, const ElasticForces& elastic) {
+  if (elastic.consistent_mass() != nullptr)
+    throw UserError("filter: elements are filtered against masses of nodes: these must be lumped");
+  std::vector<GlobalIndex> cells;
+  for (const auto& entry : mesh.cells) cells.push_back(entry.size());
+  MPI_Allreduce(MPI_IN_PLACE, cells.data(), static_cast<int>(cells.size()), MPI_INT64_T, MPI_SUM, mesh.comm);
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    if (cells[e] == 0) continue;
+    const auto& entry = mesh.cells[e];
+    const auto& region = mesh.regions[static_cast<std::size_t>(entry.region)];
+    if (entry.type != CellType::tet4)
+      throw UserError("filter: '" + region + "' has elements " + std::string(name_of(entry.type)) +
+                      "; only linear tetrahedra, tet4, can be filtered");
+    if (has_fibres(elastic.properties(entry.region).material))
+      throw UserError("filter: '" + region + "' has fibres; only isotropic materials can be filtered");
+  }
+}
+
+/// Collective. Throws UserError where every element of a region is too fast even against all the mass of its
+/// nodes: whatever the selection, all of its stiffness would be that of the filter.
+void require_stiffness_to_be_left(const FilterProblem& problem, const ModalFilterOptions& options) {
+  const auto& mesh = problem.mesh;
+  std::vector<double> slowest(mesh.regions.size(), std::numeric_limits<double>::infinity());
+  const auto eigenvalues = eigenvalues_against_all_mass(problem);
+  auto next = eigenvalues.begin();
+  for (const auto& entry : mesh.cells)
+    for (LocalIndex cell = 0; cell < entry.size(); ++cell) {
+      auto& of_region = slowest[static_cast<std::size_t>(entry.region)];
+      of_region = std::min(of_region, *next++);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, slowest.data(), static_cast<int>(slowest.size()), MPI_DOUBLE, MPI_MIN,
+                mesh.comm);
+  for (std::size_t r = 0; r < slowest.size(); ++r)
+    if (slowest[r] > options.limit() && std::isfinite(slowest[r]))
+      throw UserError(
+          formatted("filter.time_step: no filter can reach %g s with a safety of %g: every element of '%s' "
+                    "would have to be softened, and nothing of its material be left; allowed is less "
+                    "than %.3g s",
+                    options.time_step, options.safety, mesh.regions[r].c_str(),
+                    options.stability_constant / std::sqrt(slowest[r]) / options.safety));
+}
+
+}  // namespace
+
+ModalFilter::ModalFilter(const DistributedMesh& mesh, ElasticForces& elastic,
+                         const ModalFilterOptions& options)
+    : mesh_(mesh), elastic_(elastic), options_(options) {
+  require_what_can_be_filtered(mesh, elastic);
+  const auto problem = filter_problem(mesh, elastic);
+  require_stiffness_to_be_left(problem, options);
+  clamps_.resize(problem.cells.size());
+  update(problem, ChangedNodes(problem.masses.size(), true), CellClamps(clamps_));
+}
+
+ModalFilter::ModalFilter(const ModalFilter& before, const DistributedMesh& mesh, ElasticForces& elastic,
+                         const TopologyChange& change)
+    : mesh_(mesh), elastic_(elastic), options_(before.options_) {
+  require_what_can_be_filtered(mesh, elastic);
+  const auto problem = filter_problem(mesh, elastic);
+  for (const LocalIndex origin : change.origins)
+    clamps_.push_back(origin < 0 ? CellClamp{} : before.clamps_[static_cast<std::size_t>(origin)]);
+  update(problem, change.changed, CellClamps(clamps_.size()));
+}
+
+void ModalFilter::material_changed(std::int32_t region) {
+  const auto problem = filter_problem(mesh_, elastic_);
+  require_stiffness_to_be_left(problem, options_);
+  NodalSums of_region(problem);
+  for (const auto& entry : mesh_.cells)
+    if (entry.region == region)
+      for (const LocalIndex node : entry.nodes) of_region.at(node, 0) = 1;
+  of_region.share();
+  ChangedNodes changed(problem.masses.size());
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    changed[i] = of_region.at(static_cast<LocalIndex>(i), 0) > 0;
+  update(problem, changed, CellClamps(clamps_));
+}
+
+void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& changed,
+                         const CellClamps& in_force) {
+  looked_at_ = select(options_.selection, problem, options_.limit(), changed, clamps_);
+  std::vector<SeparateCells> separate;
+  std::size_t first = 0;
+  for (std::size_t e = 0; e < mesh_.cells.size(); ++e) {
+    const auto count = static_cast<std::size_t>(mesh_.cells[e].size());
+    const auto of_entry = std::span(clamps_).subspan(first, count);
+    if (!std::ranges::equal(of_entry, std::span(in_force).subspan(first, count)))
+      separate.push_back(filtered_part(e, of_entry));
+    first += count;
+  }
+  elastic_.separate(std::move(separate));
+}
+
+/// The cells of an entry that have a clamp, and a block of them.
+SeparateCells ModalFilter::filtered_part(std::size_t entry, std::span<const CellClamp> clamps) const {
+  const auto& all = mesh_.cells[entry];
+  SeparateCells part{.entry = entry};
+  std::vector<LocalIndex> nodes;
+  std::vector<CellClamp> of_part;
+  LocalIndex interior = 0;
+  for (LocalIndex cell = 0; cell < all.size(); ++cell) {
+    const auto& clamp = clamps[static_cast<std::size_t>(cell)];
+    if (!(clamp.limit > 0)) continue;
+    part.cells.push_back(cell);
+    of_part.push_back(clamp);
+    const auto of_cell = std::span(all.nodes).subspan(4 * static_cast<std::size_t>(cell), 4);
+    nodes.insert(nodes.end(), of_cell.begin(), of_cell.end());
+    interior += cell < all.interior ? 1 : 0;
+  }
+  if (part.cells.empty()) return part;
+  const auto& properties = elastic_.properties(all.region);
+  part.block = make_filtered_block({all.type, nodes, interior, properties.density, {}}, mesh_.rest_positions,
+                                   properties.material, properties.damping, of_part);
+  return part;
+}
+
+LocalIndex ModalFilter::filtered_cells() const {
+  return static_cast<LocalIndex>(
+      std::ranges::count_if(clamps_, [](const CellClamp& clamp) { return clamp.limit > 0; }));
+}
+
+}  // namespace evert

@@ -1,0 +1,126 @@
+#include "evert/filter/selection.hpp"
+
+#include "adaptive.hpp"
+#include "nodal_sums.hpp"
+#include <algorithm>
+
+namespace evert {
+namespace {
+
+bool touches(const FilterCell& cell, const ChangedNodes& nodes) {
+  return std::ranges::any_of(cell.nodes,
+                             [&](LocalIndex node) { return nodes[static_cast<std::size_t>(node)]; });
+}
+
+/// Collective. The nodes of all cells that touch `nodes`, of any rank.
+ChangedNodes with_neighbours(const FilterProblem& problem, const ChangedNodes& nodes) {
+  NodalSums flags(problem);
+  for (const auto& cell : problem.cells)
+    if (touches(cell, nodes))
+      for (const LocalIndex node : cell.nodes) flags.at(node, 0) = 1;
+  flags.share();
+  ChangedNodes wider(nodes.size());
+  for (std::size_t i = 0; i < wider.size(); ++i) wider[i] = flags.at(static_cast<LocalIndex>(i), 0) > 0;
+  return wider;
+}
+
+LocalIndex select_paper(const FilterProblem& problem, double limit, const ChangedNodes& changed,
+                        CellClamps& clamps) {
+  LocalIndex looked_at = 0;
+  for (std::size_t c = 0; c < problem.cells.size(); ++c) {
+    const auto& cell = problem.cells[c];
+    if (!touches(cell, changed)) continue;
+    ++looked_at;
+    const auto masses = cell.own_masses();
+    clamps[c] = element_modes(cell.shape, masses, cell.lame).largest() > limit ? CellClamp{masses, limit}
+                                                                               : CellClamp{};
+  }
+  return looked_at;
+}
+
+/// ‖K_e,aa‖: the largest eigenvalue of V (μ|g|² I + (λ + μ) g gᵀ).
+double stiffness_at(const FilterCell& cell, std::size_t a) {
+  const Vec3d& g = cell.shape.gradients[a];
+  return cell.shape.volume * (cell.lame.lambda + 2 * cell.lame.mu) * dot(g, g);
+}
+
+/// A cell with λ(K_e, M_e) ≤ limit gets along with λ/limit of its own masses. What is left at a node is
+/// spare, and goes to the others there in proportion to their stiffness. The shares sum to the masses, and so
+/// no eigenvalue of the body exceeds the largest of any cell against its shares.
+LocalIndex select_spare_mass(const FilterProblem& problem, double limit, const ChangedNodes& changed,
+                             CellClamps& clamps) {
+  const ChangedNodes needed = with_neighbours(problem, changed);
+  std::vector<double> own(problem.cells.size());  // λ(K_e, M_e), where it is needed
+  NodalSums sums(problem);                        // mass that slow cells need; stiffness of fast ones
+  LocalIndex looked_at = 0;
+  for (std::size_t c = 0; c < problem.cells.size(); ++c) {
+    const auto& cell = problem.cells[c];
+    if (!touches(cell, needed)) continue;
+    ++looked_at;
+    const auto masses = cell.own_masses();
+    own[c] = element_modes(cell.shape, masses, cell.lame).largest();
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (own[c] > limit)
+        sums.at(cell.nodes[a], 1) += stiffness_at(cell, a);
+      else
+        sums.at(cell.nodes[a], 0) += own[c] / limit * masses[a];
+    }
+  }
+  sums.share();
+  for (std::size_t c = 0; c < problem.cells.size(); ++c) {
+    const auto& cell = problem.cells[c];
+    if (!touches(cell, changed)) continue;
+    clamps[c] = {};
+    if (!(own[c] > limit)) continue;
+    TetMasses shares{};
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double spare =
+          problem.masses[static_cast<std::size_t>(cell.nodes[a])] - sums.at(cell.nodes[a], 0);
+      shares[a] = spare * stiffness_at(cell, a) / sums.at(cell.nodes[a], 1);
+    }
+    if (element_modes(cell.shape, shares, cell.lame).largest() > limit) clamps[c] = {shares, limit};
+  }
+  return looked_at;
+}
+
+}  // namespace
+
+FilterProblem filter_problem(const DistributedMesh& mesh, const ElasticForces& elastic) {
+  FilterProblem problem{mesh, elastic, {}, {}};
+  for (const auto& entry : mesh.cells) {
+    const auto& properties = elastic.properties(entry.region);
+    const Lame lame = std::visit([](const auto& model) { return model.lame; }, properties.material);
+    for (std::size_t first = 0; first < entry.nodes.size(); first += 4) {
+      const auto nodes = std::span(entry.nodes).subspan(first, 4);
+      FilterCell cell{{}, tet_shape(nodes, mesh.rest_positions), properties.density, lame};
+      std::copy(nodes.begin(), nodes.end(), cell.nodes.begin());
+      problem.cells.push_back(cell);
+    }
+  }
+  NodeField masses(mesh);
+  for (std::size_t i = 0; i < masses.owned().size(); ++i) masses.owned()[i] = elastic.masses()[i / 3];
+  masses.touched();
+  elastic.halo().begin_update(masses);
+  elastic.halo().end_update(masses);
+  for (std::size_t i = 0; i < masses.local().size(); i += 3) problem.masses.push_back(masses.local()[i]);
+  return problem;
+}
+
+std::vector<double> eigenvalues_against_all_mass(const FilterProblem& problem) {
+  std::vector<double> all;
+  all.reserve(problem.cells.size());
+  for (const auto& cell : problem.cells)
+    all.push_back(element_modes(cell.shape, masses_of_nodes(problem, cell), cell.lame).largest());
+  return all;
+}
+
+LocalIndex select(FilterSelection selection, const FilterProblem& problem, double limit,
+                  const ChangedNodes& changed, CellClamps& clamps) {
+  if (selection == FilterSelection::paper) return select_paper(problem, limit, changed, clamps);
+  if (selection == FilterSelection::spare_mass) return select_spare_mass(problem, limit, changed, clamps);
+  std::vector<bool> at_changed_nodes;
+  for (const auto& cell : problem.cells) at_changed_nodes.push_back(touches(cell, changed));
+  return select_adaptive(problem, limit, at_changed_nodes, clamps);
+}
+
+}  // namespace evert
