@@ -53,6 +53,23 @@ TEST(RigidAndNodes, KeepTheirMomentumTogether) {
   }
 }
 
+TEST(RigidAndNodes, KeepTheirMomentumTogetherWithExplicitDamping) {
+  for (const std::string mass : {"0.2", "20"}) {
+    auto scene = test::build(hit_cube(mass), {"integrator.method=verlet"});
+    auto& simulation = *scene.simulation;
+    const auto start = simulation.measure();
+    for (int step = 0; step < 600; ++step) simulation.step(5e-4);
+    const auto now = simulation.measure();
+    const double lost = norm(now.momentum - start.momentum) / norm(start.momentum);
+    test::verify("ball of " + mass + " kg hits a cube, verlet: change of the momentum of both", "0", lost,
+                 "<= 1e-10");
+    EXPECT_LE(lost, 1e-10);
+    EXPECT_GT(norm(simulation.obstacle_impulses().front().linear), 0.1) << "they must have met";
+    EXPECT_LE(norm(now.contact_impulse), 0) << "nothing else was touched";
+    EXPECT_LE(now.kinetic_energy + now.elastic_energy, start.kinetic_energy * (1 + 1e-3));
+  }
+}
+
 /// A ball of this mass on a mattress, damped so stiffly that its surface weighs more than the ball.
 std::string ball_on_mattress(const std::string& mass) {
   return R"(
@@ -168,6 +185,25 @@ TEST(MovingObstacles, ABlockIsCarriedByABelt) {
   test::verify("block carried by a belt: its velocity over that of the belt in the end", "1", carried / speed,
                "0.999 to 1.001");
   EXPECT_NEAR(carried / speed, 1, 1e-3);
+}
+
+TEST(MovingObstacles, ABlockIsPulledByABeltWhateverTheMethod) {
+  constexpr double mass = 2, pull = 0.3 * 9.81;
+  for (const char* method : {"verlet", "symplectic_euler"}) {
+    auto scene = test::build(
+        block_on("velocity: [1.5, 0, 0]"),
+        {std::string("integrator.method=") + method, "bodies.block.damping.stiffness_proportional=2e-4"});
+    auto& simulation = *scene.simulation;
+    run_until(simulation, 0.2);
+    const double first = simulation.measure().momentum[0] / mass;
+    run_until(simulation, 0.4);
+    const double second = simulation.measure().momentum[0] / mass;
+    test::verify(std::string("block carried by a belt, ") + method + ": acceleration over mu g", "1",
+                 (second - first) / 0.2 / pull, "0.99 to 1.01");
+    EXPECT_NEAR((second - first) / 0.2 / pull, 1, 0.01) << method;
+    const auto given = simulation.obstacle_impulses().front().linear - simulation.measure().contact_impulse;
+    EXPECT_LE(norm(given), 1e-12) << "the only obstacle gave it all";
+  }
 }
 
 TEST(MovingObstacles, ABlockGoesRoundOnATurningDisk) {
