@@ -22,8 +22,14 @@ void copy_owned(const NodeField& from, NodeField& to) {
   to.touched();
 }
 
+void update_ghosts(System& system) {
+  system.elastic.halo().begin_update(system.x);
+  system.elastic.halo().end_update(system.x);
+}
+
 /// Collective. Of the elastic forces and of the loads at `t` [J].
-double potential_energy(const System& system, double t) {
+double potential_energy(System& system, double t) {
+  update_ghosts(system);
   NodeField loads(system.mesh);
   system.add_loads(t, loads);
   double energy = system.elastic.energy(system.x);
@@ -33,7 +39,8 @@ double potential_energy(const System& system, double t) {
 }
 
 /// Collective.
-std::string untangling_note(const System& system, double time, std::uint64_t attempts) {
+std::string untangling_note(System& system, double time, std::uint64_t attempts) {
+  update_ghosts(system);
   auto inverted = static_cast<GlobalIndex>(system.elastic.inverted_points(system.x));
   MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPI_INT64_T, MPI_SUM, system.mesh.comm);
   return formatted("t = %.6g s: elements were inverted at rest; after %llu searches around them, ", time,
