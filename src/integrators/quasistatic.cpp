@@ -27,13 +27,16 @@ void update_ghosts(System& system) {
   system.elastic.halo().end_update(system.x);
 }
 
-/// Collective. Of the elastic forces and of the loads at `t` [J].
+/// Collective. Of the elastic forces and of the loads at `t`, which do work from the rest shape on: where the
+/// origin of the world is, is of no matter [J].
 double potential_energy(System& system, double t) {
   update_ghosts(system);
   NodeField loads(system.mesh);
   system.add_loads(t, loads);
   double energy = system.elastic.energy(system.x);
-  for (std::size_t i = 0; i < loads.owned().size(); ++i) energy -= loads.owned()[i] * system.x.owned()[i];
+  const auto& rest = system.mesh.rest_positions;
+  for (std::size_t i = 0; i < loads.owned().size(); ++i)
+    energy -= loads.owned()[i] * (system.x.owned()[i] - rest[i / 3][i % 3]);
   MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, system.mesh.comm);
   return energy;
 }
