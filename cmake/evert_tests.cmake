@@ -32,7 +32,8 @@ function(add_program_test name)
     EVERT_PROGRAM="$<TARGET_FILE:evert>" EVERT_MPIEXEC="${MPIEXEC_EXECUTABLE}")
   target_link_libraries(${name} PRIVATE evert_warnings GTest::gtest GTest::gtest_main)
   add_dependencies(${name} evert)
-  evert_discover_cases(${name} "program;${ARG_LABELS}" "${ARG_TIMEOUT}" 2)
+  # On several ranks, too, they mostly wait for mpirun to start: as many at a time as there are cores.
+  evert_discover_cases(${name} "program;${ARG_LABELS}" "${ARG_TIMEOUT}" 1)
 endfunction()
 
 # Makes the cases of a GoogleTest binary tests of ctest.

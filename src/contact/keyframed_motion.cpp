@@ -18,8 +18,8 @@ Vec3d slope(const Vec3d& before, double duration_before, const Vec3d& after, dou
   return result;
 }
 
-/// [φ]× and φ's coefficients of the derivative of the exponential: the body's own angular velocity of exp(φ)
-/// is J φ′ with J = I − a [φ]× + b [φ]×².
+/// The angular velocity of exp(φ(t)) in the frame of the body, J φ′ with J = I − a [φ]× + b [φ]×², a = (1 −
+/// cos θ)/θ², b = (θ − sin θ)/θ³, θ = |φ|.
 Vec3d angular_velocity_of(const Vec3d& phi, const Vec3d& rate) {
   const double square = dot(phi, phi), angle = std::sqrt(square);
   const bool small = angle < 1e-4;  // where the next terms of the series are below rounding

@@ -88,10 +88,14 @@ PushOut push_out(std::span<const Bound> bounds) {
 
 void split_over(std::span<const Bound> bounds, const Mat3d& tangent, const Vec3d& vector,
                 std::vector<double>& shares) {
+  shares.clear();
+  if (bounds.size() == 1) {
+    shares.push_back(dot(bounds.front().normal, vector));
+    return;
+  }
   auto matrix = tangent;  // keeps it regular: the vector has no part there
   for (const auto& bound : bounds) matrix += outer(bound.normal, bound.normal);
   const auto dual = inverse(matrix) * (vector - tangent * vector);
-  shares.clear();
   for (const auto& bound : bounds) shares.push_back(dot(bound.normal, dual));
 }
 

@@ -1,5 +1,7 @@
 #include "evert/contact/rigid_contacts.hpp"
 
+#include "evert/math/svd3_stages.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +14,9 @@ RigidState now(const Obstacle& obstacle) {
   return obstacle.body() == nullptr ? obstacle.state()
                                     : obstacle.body()->at(std::numeric_limits<double>::infinity());
 }
+
+// Bodies that one touches at once with all of its points, for which there is room without allocation.
+constexpr std::size_t usual_others = 4;
 
 /// A support point of a body in another.
 struct Overlap {
@@ -29,14 +34,6 @@ Overlap overlap(const SupportPoint& support, const RigidState& inner, const Rigi
   return {-distance, normal, center - support.radius * normal};
 }
 
-/// Two unit vectors that make a right-handed frame with the unit vector `n`.
-std::pair<Vec3d, Vec3d> across(const Vec3d& n) {
-  const auto steep = std::abs(n[0]) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const auto side = cross(n, steep);
-  const auto first = (1 / norm(side)) * side;
-  return {first, cross(n, first)};
-}
-
 }  // namespace
 
 RigidContacts::RigidContacts(std::span<const std::unique_ptr<Obstacle>> obstacles)
@@ -49,7 +46,8 @@ RigidContacts::RigidContacts(std::span<const std::unique_ptr<Obstacle>> obstacle
     support_[o] = support_points(obstacles[o]->surface());
     most += support_[o].size();
   }
-  contacts_.reserve(most * obstacles.size());  // the step allocates nothing
+  // The step allocates nothing: room for every support point in some other bodies.
+  contacts_.reserve(most * std::min(obstacles.size(), usual_others));
 }
 
 void RigidContacts::find() {
@@ -129,7 +127,7 @@ void RigidContacts::stop() {
 /// `most`. Else one step of projected descent, whose fixed point is against the sliding; the exact stop cut
 /// short is not.
 Vec3d RigidContacts::rubbing(const Contact& contact, const Vec3d& rubbed, const Vec3d& sliding, double most) {
-  const auto [s, t] = across(contact.normal);
+  const auto [n, s, t] = frame_along(contact.normal);
   const double ss = dot(s, contact.mobility * s), st = dot(s, contact.mobility * t),
                tt = dot(t, contact.mobility * t), determinant = ss * tt - st * st;
   const double along_s = dot(s, sliding), along_t = dot(t, sliding);

@@ -46,7 +46,7 @@ std::vector<std::pair<std::string, double>> RigidDynamics::state() const {
   return all;
 }
 
-void RigidDynamics::restore_values(std::span<const std::pair<std::string, double>> kept, double time) {
+void RigidDynamics::restore(std::span<const std::pair<std::string, double>> kept, double time) {
   std::array<double, RigidBody::state_size> saved{};
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     for (std::size_t i = 0; i < saved.size(); ++i) saved[i] = kept[b * saved.size() + i].second;

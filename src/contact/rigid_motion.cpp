@@ -1,5 +1,7 @@
 #include "evert/contact/rigid_motion.hpp"
 
+#include "evert/math/quaternion.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -19,14 +21,7 @@ RigidState Oscillation::at(double t) const {
                    {rotation_by(now * angle_), now * amplitude_, change * amplitude_, change * angle_});
 }
 
-/// Rodrigues' formula, with sin(θ)/θ and (1 − cos θ)/θ² as they are at small angles.
-Mat3d rotation_by(const Vec3d& v) {
-  const double angle = norm(v), half = angle / 2;
-  const double sine = angle > 0 ? std::sin(angle) / angle : 1;
-  const double versine = half > 0 ? std::pow(std::sin(half) / half, 2) / 2 : 0.5;
-  const Mat3d crossing{{{{0, v[2], -v[1]}, {-v[2], 0, v[0]}, {v[1], -v[0], 0}}}};
-  return identity<double>() + sine * crossing + versine * (crossing * crossing);
-}
+Mat3d rotation_by(const Vec3d& v) { return rotation_matrix(quaternion_by(v)); }
 
 RigidState displaced(const RigidState& start, const Vec3d& about, const RigidState& displacement) {
   const auto arm = displacement.rotation * (start.origin - about);

@@ -58,7 +58,7 @@ double largest_of_block(const ElasticBlock& block, const LocalCells& cells, doub
                         std::span<const Vec3d> rest_positions) {
   const ElementView element = reference_element(cells.type);
   if (element.points() == 1) return std::numeric_limits<double>::infinity();
-  const Lame lame = std::visit([](const auto& model) { return model.lame; }, block.material());
+  const Lame lame = std::visit([](const auto& model) { return model.lame.regular(); }, block.material());
   CellMass volumes(cells.type);
   double largest = 1;
   for (LocalIndex cell = 0; cell < cells.size(); ++cell) {

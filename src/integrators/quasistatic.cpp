@@ -22,18 +22,28 @@ void copy_owned(const NodeField& from, NodeField& to) {
   to.touched();
 }
 
-/// Collective. Of the elastic forces and of the loads at `t` [J].
-double potential_energy(const System& system, double t) {
+void update_ghosts(System& system) {
+  system.elastic.halo().begin_update(system.x);
+  system.elastic.halo().end_update(system.x);
+}
+
+/// Collective. Of the elastic forces and of the loads at `t`, which do work from the rest shape on: where the
+/// origin of the world is, is of no matter [J].
+double potential_energy(System& system, double t) {
+  update_ghosts(system);
   NodeField loads(system.mesh);
   system.add_loads(t, loads);
   double energy = system.elastic.energy(system.x);
-  for (std::size_t i = 0; i < loads.owned().size(); ++i) energy -= loads.owned()[i] * system.x.owned()[i];
+  const auto& rest = system.mesh.rest_positions;
+  for (std::size_t i = 0; i < loads.owned().size(); ++i)
+    energy -= loads.owned()[i] * (system.x.owned()[i] - rest[i / 3][i % 3]);
   MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, system.mesh.comm);
   return energy;
 }
 
 /// Collective.
-std::string untangling_note(const System& system, double time, std::uint64_t attempts) {
+std::string untangling_note(System& system, double time, std::uint64_t attempts) {
+  update_ghosts(system);
   auto inverted = static_cast<GlobalIndex>(system.elastic.inverted_points(system.x));
   MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPI_INT64_T, MPI_SUM, system.mesh.comm);
   return formatted("t = %.6g s: elements were inverted at rest; after %llu searches around them, ", time,

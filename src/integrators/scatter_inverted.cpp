@@ -2,6 +2,7 @@
 
 #include "evert/math/nodal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -9,6 +10,9 @@
 
 namespace evert {
 namespace {
+
+// Sizes of a cell: farther apart than that, nodes take long to come together again.
+constexpr double most_reach = 4;
 
 /// Root of the mean square distance of the nodes of a cell from their mean at rest [m].
 double cell_size(const DistributedMesh& mesh, std::span<const LocalIndex> nodes) {
@@ -92,15 +96,16 @@ bool scatter_inverted(const System& system, std::span<const NodeConstraint> held
   halo.end_update(x);
   auto around = around_inverted(system, x);
   for (int ring = 0; ring < rings; ++ring) around = one_ring_more(system, std::move(around));
+  const double reach = std::min(std::exp2(rings / 2), most_reach);
   NodeField change(system.mesh);
   int found = 0;
   for (LocalIndex node = 0; node < system.mesh.owned_nodes; ++node) {
     const auto [size, count, unused] = node_value(around.owned(), node).components;
     if (count == 0) continue;
     found = 1;
-    set_node_value(
-        change.owned(), node,
-        size / count * random_direction(attempt, system.mesh.natural_nodes[static_cast<std::size_t>(node)]));
+    set_node_value(change.owned(), node,
+                   reach * size / count *
+                       random_direction(attempt, system.mesh.natural_nodes[static_cast<std::size_t>(node)]));
   }
   MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, system.mesh.comm);
   project(held, change.owned());

@@ -25,7 +25,7 @@ constexpr std::array columns{
     Column{"kinetic_energy [J]", [](const Measurements& m) { return m.kinetic_energy; }},
     Column{"elastic_energy [J]", [](const Measurements& m) { return m.elastic_energy; }},
     Column{"gravitational_energy [J]", [](const Measurements& m) { return m.gravitational_energy; }},
-    Column{"total_energy [J]", [](const Measurements& m) { return m.kinetic_energy + m.elastic_energy + m.gravitational_energy; }},
+    Column{"total_energy [J]", [](const Measurements& m) { return m.total_energy(); }},
     Column{"momentum_x [N s]", [](const Measurements& m) { return m.momentum[0]; }},
     Column{"momentum_y [N s]", [](const Measurements& m) { return m.momentum[1]; }},
     Column{"momentum_z [N s]", [](const Measurements& m) { return m.momentum[2]; }},

@@ -69,7 +69,7 @@ JsonValue final_state(const Measurements& m) {
   return JsonValue::object({{"kinetic_energy", m.kinetic_energy},
                             {"elastic_energy", m.elastic_energy},
                             {"gravitational_energy", m.gravitational_energy},
-                            {"total_energy", m.kinetic_energy + m.elastic_energy + m.gravitational_energy},
+                            {"total_energy", m.total_energy()},
                             {"momentum", vector3(m.momentum)},
                             {"angular_momentum", vector3(m.angular_momentum)},
                             {"gravity_impulse", vector3(m.gravity_impulse)},

@@ -410,8 +410,13 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
       given[o].angular[k] = value(impulse_name(*obstacles()[o], "angular_impulse", k));
     }
   const auto events_done = static_cast<std::size_t>(value("events_done"));
-  steps_ = static_cast<std::int64_t>(value("steps"));
-  system_.time = value("time");
+  const auto steps = static_cast<std::int64_t>(value("steps"));
+  const double time = value("time");
+  auto bodies = rigid_.state();
+  for (auto& [name, number] : bodies) number = value(name);
+
+  steps_ = steps;
+  system_.time = time;
   const auto replace = [](NodeField& field, std::span<const double> values) {
     std::copy(values.begin(), values.end(), field.owned().begin());
     field.touched();
@@ -424,7 +429,7 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   obstacle_impulses_before_ = std::move(given);
   std::fill(system_.obstacle_impulses.begin(), system_.obstacle_impulses.end(), ObstacleImpulse{});
   for (const auto& obstacle : obstacles()) obstacle->move_to({.end = system_.time, .dt = 1});
-  rigid_.restore(value, system_.time);
+  rigid_.restore(bodies, time);
   forces_stale_ = true;
   while (events_done_ < std::min(events_done, events_.size())) events_[events_done_++].apply(*this);
   refresh_forces();

@@ -29,14 +29,6 @@ void report(const std::string& mesh, const Simulation& simulation, double wall_s
                 static_cast<long long>(simulation.steps()), wall_seconds, imbalance);
 }
 
-void run_until(Simulation& simulation, double end) {
-  while (simulation.time() < end) {
-    const double left = end - simulation.time();
-    const double steps = std::ceil(left / simulation.suggested_time_step() - 1e-9);
-    steps <= 1 ? simulation.step_to(end) : simulation.step(left / steps);
-  }
-}
-
 /// So soft that it collapses under its weight. Steps in which slivers may flip at once: what they do there is
 /// of no interest, and most of them do nothing else.
 const std::string drop = R"(
@@ -68,7 +60,7 @@ TEST_P(RealMesh, DropsForASecondAndKeepsTheBalance) {
   auto& simulation = *scene.simulation;
   const auto start = simulation.measure();
   const auto clock = std::chrono::steady_clock::now();
-  run_until(simulation, whole ? 1.0 : 0.26);
+  test::run_until(simulation, whole ? 1.0 : 0.26);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - clock;
   EXPECT_EQ(not_finite(simulation.positions()), 0);
   EXPECT_EQ(not_finite(simulation.velocities()), 0);

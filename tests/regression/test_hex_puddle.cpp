@@ -1,25 +1,13 @@
 // examples/hex_puddle, of 216 hexahedra: collapses, and is whole again.
-#include "evert/scene/petsc_options.hpp"
 #include "evert/sim/shape_error.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/examples.hpp"
 #include "tests/support/verify.hpp"
-#include <cstdlib>
 
 namespace evert {
 namespace {
-
-BuiltScene small_ring() {
-  const char* root = std::getenv("EVERT_SOURCE_DIR");
-  const auto file = std::string(root == nullptr ? "." : root) + "/examples/hex_puddle/scene.yaml";
-  auto scene = load_scene(
-      PETSC_COMM_WORLD, file,
-      std::vector<std::string>{"bodies.ring.mesh.cells=[9, 9, 3]", "bodies.ring.mesh.hole=[3, 3]"});
-  apply_petsc_block(scene);
-  return build_scene(PETSC_COMM_WORLD, scene);
-}
 
 void run_until(Simulation& simulation, double end) {
   while (simulation.time() < end) {
@@ -38,7 +26,8 @@ double height(const Simulation& simulation) {
 }
 
 TEST(HexPuddle, CollapsesAndRecoversWithNothingInverted) {
-  auto scene = small_ring();
+  auto scene =
+      test::build_example("hex_puddle", {"bodies.ring.mesh.cells=[9, 9, 3]", "bodies.ring.mesh.hole=[3, 3]"});
   auto& simulation = *scene.simulation;
   const auto& mesh = simulation.mesh();
   constexpr double points = 216 * 8, rest_height = 1.0 / 3;

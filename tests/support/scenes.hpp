@@ -3,6 +3,8 @@
 #include "evert/scene/build.hpp"
 #include "evert/scene/load.hpp"
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,32 @@ inline std::vector<double> after_steps(Simulation& simulation, int steps) {
   for (int step = 0; step < steps; ++step) simulation.step(simulation.suggested_time_step());
   return gathered(simulation.mesh(), simulation.positions());
 }
+
+/// Collective. To `end` [s] in equal steps as long as the simulation suggests.
+inline double run_until(Simulation& simulation, double end) {
+  while (simulation.time() < end) {
+    const double left = end - simulation.time();
+    const double steps = std::ceil(left / simulation.suggested_time_step() - 1e-9);
+    steps <= 1 ? simulation.step_to(end) : simulation.step(left / steps);
+  }
+  return simulation.time();
+}
+
+/// What a checkpoint holds of a simulation.
+class KeptState {
+ public:
+  explicit KeptState(const Simulation& simulation) : scalars_(simulation.state_scalars()) {
+    const auto [x, v, changes] = simulation.node_state();
+    x_.assign(x.begin(), x.end());
+    v_.assign(v.begin(), v.end());
+    changes_.assign(changes.begin(), changes.end());
+  }
+  void restore(Simulation& simulation) const { simulation.restore({x_, v_, changes_}, scalars_); }
+
+ private:
+  std::vector<double> x_, v_, changes_;
+  std::vector<StateScalar> scalars_;
+};
 
 /// Largest difference of two arrays.
 inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {

@@ -32,14 +32,6 @@ obstacles:
   return test::build(yaml);
 }
 
-double run_until(Simulation& simulation, double end) {
-  while (simulation.time() < end) {
-    const double steps = std::ceil((end - simulation.time()) / simulation.suggested_time_step() - 1e-9);
-    steps <= 1 ? simulation.step_to(end) : simulation.step((end - simulation.time()) / steps);
-  }
-  return simulation.time();
-}
-
 double mean_velocity_along_slope(const Simulation& simulation) {
   const auto now = simulation.measure();
   return now.momentum[0] / (1000 * 0.2 * 0.05 * 0.2);
@@ -51,9 +43,9 @@ TEST(Friction, SlidesWithCoulombsAcceleration) {
     const double angle = degrees * std::numbers::pi / 180;
     auto scene = block_on_slope(angle, friction, 5e-3);
     auto& simulation = *scene.simulation;
-    const double begin = run_until(simulation, 0.3);
+    const double begin = test::run_until(simulation, 0.3);
     const double before = mean_velocity_along_slope(simulation);
-    const double end = run_until(simulation, 0.8);
+    const double end = test::run_until(simulation, 0.8);
     const double acceleration = (mean_velocity_along_slope(simulation) - before) / (end - begin);
     const double expected = 9.81 * (std::sin(angle) - friction * std::cos(angle));
     EXPECT_NEAR(acceleration / expected, 1, 0.01) << degrees << " degrees";
@@ -68,9 +60,9 @@ TEST(Friction, SticksBelowTheCoulombAngle) {
   for (const double damping_time : {5e-4, 5e-3}) {  // with the latter a step spans several undamped ones
     auto scene = block_on_slope(std::atan(friction) * 0.9, friction, damping_time);
     auto& simulation = *scene.simulation;
-    run_until(simulation, 1.0);  // the block settles on its springs
+    test::run_until(simulation, 1.0);  // the block settles on its springs
     const auto settled = test::gathered(simulation.mesh(), simulation.positions());
-    run_until(simulation, 3.0);
+    test::run_until(simulation, 3.0);
     const auto later = test::gathered(simulation.mesh(), simulation.positions());
     const double crept = test::largest_difference(settled, later);
     EXPECT_LE(crept, 1e-6) << "damping " << damping_time << " s";
@@ -84,7 +76,7 @@ TEST(Friction, ImpulsesBalanceTheMomentum) {
   auto scene = block_on_slope(0.5, 0.3, 5e-3);
   auto& simulation = *scene.simulation;
   const auto start = simulation.measure();
-  run_until(simulation, 0.5);
+  test::run_until(simulation, 0.5);
   const auto now = simulation.measure();
   const auto gained = now.momentum - start.momentum;
   const auto received = now.gravity_impulse + now.contact_impulse + now.constraint_impulse;
@@ -109,20 +101,17 @@ obstacles:
   ground: {shape: half_space, normal: [0, 1, 0], friction: 0}
 )");
   auto& simulation = *scene.simulation;
-  const auto total = [](const Measurements& m) {
-    return m.kinetic_energy + m.elastic_energy + m.gravitational_energy;
-  };
   const auto start = simulation.measure();
   const double scale = start.gravitational_energy;
-  double energy = total(start);
+  double energy = start.total_energy();
   double previous_velocity = 0;
   double last_apex = std::numeric_limits<double>::infinity();
   int bounces = 0;
   while (simulation.time() < 3.0) {
     simulation.step(std::min(simulation.suggested_time_step(), 2e-3));
     const auto now = simulation.measure();
-    EXPECT_LE(total(now), energy + 1e-3 * scale) << "at t = " << simulation.time();
-    energy = std::min(energy, total(now));
+    EXPECT_LE(now.total_energy(), energy + 1e-3 * scale) << "at t = " << simulation.time();
+    energy = std::min(energy, now.total_energy());
     if (previous_velocity > 0 && now.momentum[1] <= 0) {  // an apex
       EXPECT_LT(now.gravitational_energy, last_apex * (1 + 1e-9));
       last_apex = now.gravitational_energy;

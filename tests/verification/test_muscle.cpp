@@ -128,12 +128,9 @@ TEST(Muscle, RestoredIsBitwiseEqual) {
   const auto whole = test::build(curved_strip);
   test::after_steps(*whole.simulation, 23);
   whole.simulation->step_to(whole.simulation->time() + 1e-5 / 3);
-  const auto [x, v, changes] = whole.simulation->node_state();
-  const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
-      kept_changes(changes.begin(), changes.end());
-  const auto scalars = whole.simulation->state_scalars();
+  const test::KeptState kept(*whole.simulation);
   const auto restarted = test::build(curved_strip);
-  restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
+  kept.restore(*restarted.simulation);
   EXPECT_EQ(test::after_steps(*restarted.simulation, 60), test::after_steps(*whole.simulation, 60));
 }
 

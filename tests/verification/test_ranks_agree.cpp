@@ -49,15 +49,11 @@ TEST_P(RanksAgree, TwoRunsAreBitwiseEqual) {
 TEST_P(RanksAgree, ARestoredRunIsBitwiseEqual) {
   auto whole = test::build(falling_ball, method_);
   test::after_steps(*whole.simulation, 37);
-  const auto& running = *whole.simulation;
-  const auto [x, v, changes] = running.node_state();
-  const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
-      kept_changes(changes.begin(), changes.end());
-  const auto scalars = running.state_scalars();
+  const test::KeptState kept(*whole.simulation);
   const auto uninterrupted = test::after_steps(*whole.simulation, 100);
 
   auto restarted = test::build(falling_ball, method_);
-  restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
+  kept.restore(*restarted.simulation);
   EXPECT_EQ(restarted.simulation->steps(), 37);
   EXPECT_EQ(test::after_steps(*restarted.simulation, 100), uninterrupted);
 }
@@ -99,13 +95,10 @@ TEST(ConsistentRanksAgree, PositionsAfterTenStepsEqualThoseOfOneRank) {
 TEST(ConsistentRanksAgree, ARestoredRunIsBitwiseEqual) {
   auto whole = test::build(consistent_beam);
   test::after_steps(*whole.simulation, 3);
-  const auto [x, v, changes] = whole.simulation->node_state();
-  const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
-      kept_changes(changes.begin(), changes.end());
-  const auto scalars = whole.simulation->state_scalars();
+  const test::KeptState kept(*whole.simulation);
   const auto uninterrupted = test::after_steps(*whole.simulation, 5);
   auto restarted = test::build(consistent_beam);
-  restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
+  kept.restore(*restarted.simulation);
   EXPECT_EQ(test::after_steps(*restarted.simulation, 5), uninterrupted);
 }
 

@@ -71,6 +71,7 @@ TEST(RigidAndNodes, KeepTheirMomentumTogetherWithExplicitDamping) {
 }
 
 /// A ball of this mass on a mattress, damped so stiffly that its surface weighs more than the ball.
+/// Off the axis of the mattress: on it, the direction in which the node below slides would be rounding.
 std::string ball_on_mattress(const std::string& mass) {
   return R"(
 name: rest
@@ -85,7 +86,7 @@ bodies:
 constraints:
   - {body: mattress, node_set: y_min, fixed: true}
 obstacles:
-  ball: {shape: sphere, center: [0, 0.41, 0], radius: 0.2, friction: 0.4, mass: )" +
+  ball: {shape: sphere, center: [0.03, 0.41, 0.017], radius: 0.2, friction: 0.4, mass: )" +
          mass + "}\n";
 }
 
@@ -107,10 +108,7 @@ TEST(RigidAndNodes, ABallComesToRestOnAMattressHoweverLight) {
     // A ball that is light beside the nodes may touch them in every other step: half of g Δt either way.
     EXPECT_LE(norm(ball->velocity()), 9.81 * 4e-3) << mass;
     const auto now = simulation.measure();
-    const auto energy = [](const Measurements& m) {
-      return m.kinetic_energy + m.elastic_energy + m.gravitational_energy;
-    };
-    EXPECT_LE(energy(now), energy(before));
+    EXPECT_LE(now.total_energy(), before.total_energy());
   }
 }
 
@@ -125,6 +123,7 @@ TEST(RigidAndNodes, AgreeOnAnyNumberOfRanks) {
     return scene.simulation->obstacles().front()->body()->center();
   };
   EXPECT_LE(norm(center(alone) - center(together)), 1e-9);
+  EXPECT_GT(norm(together.simulation->obstacle_impulses().front().linear), 0) << "they must have met";
 }
 
 TEST(RigidAndNodes, ARestoredRunIsBitwiseEqual) {
@@ -132,14 +131,11 @@ TEST(RigidAndNodes, ARestoredRunIsBitwiseEqual) {
   auto whole = test::build(yaml);
   test::after_steps(*whole.simulation, 60);
   EXPECT_GT(norm(whole.simulation->obstacle_impulses().front().linear), 0) << "in the middle of the impact";
-  const auto [x, v, changes] = whole.simulation->node_state();
-  const std::vector<double> kept_x(x.begin(), x.end()), kept_v(v.begin(), v.end()),
-      kept_changes(changes.begin(), changes.end());
-  const auto scalars = whole.simulation->state_scalars();
+  const test::KeptState kept(*whole.simulation);
   const auto uninterrupted = test::after_steps(*whole.simulation, 100);
 
   auto restarted = test::build(yaml);
-  restarted.simulation->restore({kept_x, kept_v, kept_changes}, scalars);
+  kept.restore(*restarted.simulation);
   EXPECT_EQ(test::after_steps(*restarted.simulation, 100), uninterrupted);
   EXPECT_EQ(restarted.simulation->obstacles().front()->body()->save(),
             whole.simulation->obstacles().front()->body()->save());
@@ -162,25 +158,18 @@ obstacles:
          motion + "}}\n";
 }
 
-void run_until(Simulation& simulation, double end) {
-  while (simulation.time() < end) {
-    const double steps = std::ceil((end - simulation.time()) / simulation.suggested_time_step() - 1e-9);
-    steps <= 1 ? simulation.step_to(end) : simulation.step((end - simulation.time()) / steps);
-  }
-}
-
 TEST(MovingObstacles, ABlockIsCarriedByABelt) {
   constexpr double speed = 1.5, mass = 2, pull = 0.3 * 9.81;
   auto scene = test::build(block_on("velocity: [1.5, 0, 0]"));
   auto& simulation = *scene.simulation;
-  run_until(simulation, 0.2);
+  test::run_until(simulation, 0.2);
   const double first = simulation.measure().momentum[0] / mass;
-  run_until(simulation, 0.4);
+  test::run_until(simulation, 0.4);
   const double second = simulation.measure().momentum[0] / mass;
   test::verify("block carried by a belt: acceleration over mu g", "1", (second - first) / 0.2 / pull,
                "0.99 to 1.01");
   EXPECT_NEAR((second - first) / 0.2 / pull, 1, 0.01);
-  run_until(simulation, 1);
+  test::run_until(simulation, 1);
   const double carried = simulation.measure().momentum[0] / mass;
   test::verify("block carried by a belt: its velocity over that of the belt in the end", "1", carried / speed,
                "0.999 to 1.001");
@@ -219,9 +208,9 @@ TEST(MovingObstacles, ABlockGoesRoundOnATurningDisk) {
     EXPECT_NEAR(std::hypot(sum[0], sum[2]) / count, radius, 0.01 * radius) << "it must not slide out";
     return std::atan2(-sum[2], sum[0]);
   };
-  run_until(simulation, 0.2);
+  test::run_until(simulation, 0.2);
   const double before = angle();
-  run_until(simulation, 1.2);
+  test::run_until(simulation, 1.2);
   const double turned = angle() - before;
   test::verify("block on a turning disk: its angle over that of the disk", "1", turned / spin,
                "0.999 to 1.001");

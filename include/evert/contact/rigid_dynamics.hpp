@@ -39,17 +39,10 @@ class RigidDynamics {
 
   /// Names and values of all that a checkpoint keeps, in an order of their own.
   [[nodiscard]] std::vector<std::pair<std::string, double>> state() const;
-  /// The same names with the values that `value(name)` returns, at `time`.
-  template <class Value>
-  void restore(Value&& value, double time) {
-    auto kept = state();
-    for (auto& [name, number] : kept) number = value(name);
-    restore_values(kept, time);
-  }
+  /// Replaces it by what state() gave, at `time` [s].
+  void restore(std::span<const std::pair<std::string, double>> kept, double time);
 
  private:
-  void restore_values(std::span<const std::pair<std::string, double>> kept, double time);
-
   std::span<const std::unique_ptr<Obstacle>> obstacles_;
   std::vector<std::size_t> bodies_;
   RigidContacts contacts_;

@@ -26,6 +26,8 @@ struct Measurements {
   Vec3d constraint_impulse{};       ///< from fixed and scripted nodes, accumulated since the start [N s]
   Vec3d damping_impulse{};          ///< of mass-proportional damping, accumulated since the start [N s]
   GlobalIndex inverted_points = 0;  ///< quadrature points with det F < 0; a tet4 has one
+
+  [[nodiscard]] double total_energy() const { return kinetic_energy + elastic_energy + gravitational_energy; }
 };
 
 /// The nodal values that a checkpoint keeps, 3 per owned node. They are views: of the simulation that gave

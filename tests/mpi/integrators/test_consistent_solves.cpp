@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "deformed_box.hpp"
 #include "tests/support/petsc_options.hpp"
 #include <cmath>
 #include <string>
@@ -23,14 +24,7 @@ Mesh quadratic_box() {
 class ConsistentBox : public testing::TestWithParam<bool> {
  protected:
   ConsistentBox() {
-    for (LocalIndex i = 0; i < mesh_.local_nodes(); ++i) {
-      const auto rest = mesh_.rest_positions[static_cast<std::size_t>(i)];
-      const Vec3d wave{std::sin(3 * rest[1]), 0.2 * std::cos(5 * rest[2]), 0.3 * std::sin(4 * rest[0])};
-      set_node_value(x_.local(), i, rest + 0.2 * wave);
-      set_node_value(v_.local(), i, {std::cos(7 * rest[2]), std::sin(5 * rest[0]), std::cos(rest[1])});
-    }
-    x_.touched();
-    v_.touched();
+    test::deform(mesh_, 0.2, x_, v_);
     elastic_.update(x_, f_);
     check(VecDuplicate(v_.vec(), right_.out()));
     check(VecCopy(v_.vec(), right_.get()));
@@ -47,15 +41,7 @@ class ConsistentBox : public testing::TestWithParam<bool> {
     return {damped};
   }
 
-  /// Every third node may not move along a slanted normal; node 0 of each rank is held altogether.
-  [[nodiscard]] std::vector<NodeConstraint> constraints() const {
-    std::vector<NodeConstraint> list;
-    if (mesh_.owned_nodes > 0) list.push_back({0, Mat3d{}, {{1, 2, 3}}});
-    const Vec3d n{{0.6, 0, 0.8}};
-    for (LocalIndex i = 3; i < mesh_.owned_nodes; i += 3)
-      list.push_back({i, projector_off(std::array{n}), 0.5 * n});
-    return list;
-  }
+  [[nodiscard]] std::vector<NodeConstraint> constraints() const { return test::some_constraints(mesh_); }
 
   /// ‖a − b‖ in the largest component; b becomes the difference.
   static double difference(Vec a, Vec b) {

@@ -231,8 +231,8 @@ TEST(Collisions, APinchedNodeStopsBetweenTheBodiesAndGoesWithThem) {
 }
 
 TEST(Collisions, CatchNodesThatAStepTakesThroughABody) {
-  for (const double speed : {5.0, 50.0, 5000.0, 5e7})  // of a ball of radius 1, in steps of 0.1 s
-    for (const double share : {0.3, 0.5, 0.9}) {       // of the step, until the node is in the middle
+  for (const double speed : {50.0, 5000.0, 5e7})  // of a ball of radius 1, in steps of 0.1 s
+    for (const double share : {0.3, 0.5, 0.9}) {  // of the step, until the node is in the middle
       std::vector<std::unique_ptr<Obstacle>> obstacles;
       obstacles.push_back(ball("ball", 0, {}, {}));
       const std::vector<double> mass{1.0};
@@ -240,7 +240,7 @@ TEST(Collisions, CatchNodesThatAStepTakesThroughABody) {
       const double begin = std::max(share * speed * 0.1, 1.2);
       std::vector<double> x{0, begin - 0.1 * speed, 0.1}, v{0, -speed, 0};
       const auto predicted = v;
-      if (x[1] > 0) continue;  // not through
+      ASSERT_LT(x[1], 0) << "it must go through";
       collisions.resolve(x, v, predicted, {}, step);
       ASSERT_EQ(collisions.contacts(), 1) << speed << ' ' << share;
       EXPECT_NEAR(x[1], std::sqrt(1 - 0.01), 1e-6) << "where it came in";

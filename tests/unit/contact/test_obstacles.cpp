@@ -49,7 +49,7 @@ TEST(Obstacle, TurnsAboutItsOrigin) {
   auto plane =
       moving(HalfSpace({{1, 0, 0}}, {{1, 0, 0}}), {.origin = {0, 5, 0}, .angular_velocity = {0, 0, quarter}});
   plane.move_to({.end = 1, .dt = 1});  // by a quarter of a turn
-  EXPECT_NEAR(plane.signed_distance({{7, 6.5, 7}}), 0.5, 1e-15);
+  EXPECT_NEAR(plane.signed_distance({{7, 6.5, 7}}), 0.5, 1e-14);
   EXPECT_NEAR(norm(plane.normal({}) - Vec3d{0, 1, 0}), 0, 1e-15);
   EXPECT_NEAR(norm(plane.velocity({{1, 5, 0}}) - Vec3d{0, quarter, 0}), 0, 1e-15);
   EXPECT_NEAR(norm(plane.mean_velocity({{0, 6, 0}}) - Vec3d{-1, 1, 0}), 0, 1e-15) << "from (1, 5, 0)";

@@ -212,6 +212,22 @@ TEST(StableStep, IsABoundAtRest) {
   }
 }
 
+/// The largest step of the tangent at `x`, without damping.
+double exact_step(ElasticBlock& block, const Body& body, const NodalValues& x) {
+  const double largest = largest_eigenvalue(per_mass(tangent_stiffness(block, x), lumped_mass(body)));
+  return 2 / std::sqrt(std::max(largest, 1e-300));
+}
+
+/// Shaken, and flatter the smaller `squash` is; inverted below 0.
+NodalValues squashed(const Body& body, double squash, unsigned seed) {
+  return deformed(
+      body,
+      [=](const Vec3d& p) {
+        return Vec3d{p[0], squash * p[1], 1.1 * p[2]};
+      },
+      0.005, seed);
+}
+
 /// Away from rest: rigorous for tetrahedra wherever the force has a tangent.
 TEST(StableStep, IsABoundAtEveryState) {
   const Body body = box(CellType::tet4, 1, 1, 1, 0.1, 0.1);
@@ -219,15 +235,8 @@ TEST(StableStep, IsABoundAtEveryState) {
     const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
     for (unsigned seed = 0; seed < 40; ++seed) {
       const double squash = 1.2 - 0.05 * seed;
-      const NodalValues x = deformed(
-          body,
-          [=](const Vec3d& p) {
-            return Vec3d{p[0], squash * p[1], 1.1 * p[2]};
-          },
-          0.005, seed);
-      const double exact =
-          2 / std::sqrt(std::max(
-                  largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
+      const NodalValues x = squashed(body, squash, seed);
+      const double exact = exact_step(*block, body, x);
       const double bound = block->stable_step(x.data()).undamped;
       EXPECT_LE(bound, exact * 1.001) << name_of(material) << ", squashed to " << squash;
       // Not wildly below either. With `clamp` it is that of the clamped stretches, stiffer than the force is;
@@ -252,15 +261,8 @@ TEST(StableStep, OfALiquidIsABound) {
     const auto block = make_elastic_block(body.elastic_cells(), body.rest, material, no_damping);
     for (unsigned seed = 0; seed < 40; ++seed) {
       const double squash = 1.2 - 0.03 * seed;
-      const NodalValues x = deformed(
-          body,
-          [=](const Vec3d& p) {
-            return Vec3d{p[0], squash * p[1], 1.1 * p[2]};
-          },
-          0.005, seed);
-      const double exact =
-          2 / std::sqrt(std::max(
-                  largest_eigenvalue(per_mass(tangent_stiffness(*block, x), lumped_mass(body))), 1e-300));
+      const NodalValues x = squashed(body, squash, seed);
+      const double exact = exact_step(*block, body, x);
       const double bound = block->stable_step(x.data()).undamped;
       EXPECT_LE(bound, exact * 1.001) << name_of(material) << ", squashed to " << squash;
       EXPECT_GT(bound, 0);
