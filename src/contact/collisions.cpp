@@ -46,6 +46,14 @@ Mat3d tangent_of(std::span<const Bound> bounds) {
   return tangent;
 }
 
+/// True where the cones of friction of two bodies see each other along the normals: pressed together, the
+/// bodies then hold what is between them, and it cannot slip out of the gap.
+bool grips(const Vec3d& normal, double friction, const Vec3d& other, double other_friction) {
+  const double cosine = -dot(normal, other);
+  return cosine > 0 &&
+         cosine * std::hypot(1, friction) * std::hypot(1, other_friction) >= 1 - friction * other_friction;
+}
+
 double angle_between(const Mat3d& a, const Mat3d& b) {
   return 2 * std::asin(std::min(1.0, norm(a - b) / std::sqrt(8.0)));
 }
@@ -188,6 +196,7 @@ PushOut Collisions::leave(Contact& contact, const Way& way, std::span<const std:
   for (int round = 0; round < most_rounds; ++round) {
     bounds_.clear();
     contact.touches = touches_.size() - contact.first_touch;
+    face_each_other(std::span(touches_).subspan(contact.first_touch));
     for (const auto& touch : touches_of(contact)) bounds_.push_back({touch.normal, touch.depth});
     out = push_out(bounds_);
     if (out.pinched || round + 1 == most_rounds || !search_.find_after(way, out.change, near, touches_))
@@ -195,6 +204,27 @@ PushOut Collisions::leave(Contact& contact, const Way& way, std::span<const std:
   }
   contact.tangent = tangent_of(bounds_);
   return out;
+}
+
+/// Two bodies that grip what is between them press along one line, the mean of their normals. By the normals
+/// themselves a node between two surfaces that close in at an angle would be moved out of the gap, which
+/// their friction forbids, and all the way to where they meet.
+void Collisions::face_each_other(std::span<Touch> touches) const {
+  double most_opposed = 0;
+  Touch *one = nullptr, *other = nullptr;
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    for (std::size_t j = i + 1; j < touches.size(); ++j) {
+      const auto &a = touches[i], &b = touches[j];
+      const double cosine = dot(a.normal, b.normal);
+      if (cosine >= most_opposed || !grips(a.normal, friction(a), b.normal, friction(b))) continue;
+      most_opposed = cosine, one = &touches[i], other = &touches[j];
+    }
+  if (one == nullptr) return;
+  const auto apart = one->normal - other->normal;
+  const double size = norm(apart);
+  for (auto* touch : {one, other}) touch->depth *= 2 / size;  // along a line that is oblique to the surface
+  one->normal = (1 / size) * apart;
+  other->normal = (-1 / size) * apart;
 }
 
 /// Of the bodies, weighted with their coefficients of friction; plain where none has any.

@@ -104,6 +104,7 @@ class Collisions {
   void resolve_node(LocalIndex node, std::span<double> x, std::span<double> v,
                     std::span<const double> predicted, std::span<const std::size_t> near, double dt);
   PushOut leave(Contact& contact, const Way& way, std::span<const std::size_t> near);
+  void face_each_other(std::span<Touch> touches) const;
   void constrain(const Contact& contact, Vec3d v);
   Contact after_solve(Contact contact, const Vec3d& velocity, const Vec3d& reaction);
   void share_out(auto&& impulse);
