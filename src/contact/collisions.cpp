@@ -32,20 +32,6 @@ bool is_turned(const Vec3d& motion, const Vec3d& sliding) {
   return dot(motion, sliding) < 0.5 * norm(motion) * norm(sliding);
 }
 
-/// P: off the normals of all bounds.
-Mat3d tangent_of(std::span<const Bound> bounds) {
-  std::array<Vec3d, 3> normals{};
-  auto tangent = identity<double>();
-  std::size_t count = 0;
-  for (const auto& bound : bounds) {
-    if (count == normals.size()) break;  // a fourth independent direction does not exist
-    if (norm(tangent * bound.normal) < 1e-6) continue;
-    normals[count++] = bound.normal;
-    tangent = projector_off(std::span(normals).first(count));
-  }
-  return tangent;
-}
-
 /// True where the cones of friction of two bodies see each other along the normals: pressed together, the
 /// bodies then hold what is between them, and it cannot slip out of the gap.
 bool grips(const Vec3d& normal, double friction, const Vec3d& other, double other_friction) {
@@ -62,6 +48,7 @@ double angle_between(const Mat3d& a, const Mat3d& b) {
 
 Collisions::Collisions(std::vector<std::unique_ptr<Obstacle>> obstacles, std::span<const double> masses)
     : obstacles_(std::move(obstacles)),
+      standing_(obstacles_, masses.size()),
       masses_(masses),
       given_(obstacles_.size()),
       warned_(obstacles_.size()) {
@@ -99,6 +86,18 @@ void Collisions::share_out(auto&& impulse) {
   }
 }
 
+// --- from xⁿ to x̃
+
+const StandingNodes& Collisions::find_standing(std::span<const double> x, std::span<const double> v,
+                                               std::span<const double> f,
+                                               std::span<const NodeConstraint> prescribed,
+                                               const StepInterval& step) {
+  for (const auto& obstacle : obstacles_)
+    if (obstacle->body() == nullptr) obstacle->move_to(step);
+  standing_.find({masses_, x, v, f}, prescribed, step.dt);
+  return standing_;
+}
+
 // --- from x̃ to xⁿ⁺¹
 
 void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<const double> predicted,
@@ -112,7 +111,7 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
   const auto nodes = static_cast<LocalIndex>(masses_.size());
   for (LocalIndex begin = 0; begin < nodes; begin += chunk) {
     const auto end = std::min(begin + chunk, nodes);
-    const auto near = search_.near(box_of(begin, end, x, predicted, step.dt));
+    const auto near = search_.near(around(box_of(begin, end, x, predicted, step.dt)));
     if (near.empty()) continue;
     auto fixed = std::lower_bound(prescribed.begin(), prescribed.end(), begin,
                                   [](const NodeConstraint& c, LocalIndex node) { return c.node < node; });
@@ -122,6 +121,7 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
       resolve_node(node, x, v, predicted, near, step.dt);
     }
   }
+  standing_.clear();
   share_out([](const Contact& contact) { return contact.impulse; });
 }
 
@@ -144,6 +144,7 @@ void Collisions::resolve_node(LocalIndex node, std::span<double> x, std::span<do
   Way way{reached - dt * led, reached};
   Contact contact{.node = node, .first_touch = touches_.size()};
   search_.find(way, near, touches_);
+  standing_.add_touches(node, way.to, contact.first_touch, touches_);
   if (touches_.size() == contact.first_touch) return;
 
   const auto out = leave(contact, way, near);

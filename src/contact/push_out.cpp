@@ -1,5 +1,6 @@
 #include "evert/contact/push_out.hpp"
 
+#include "evert/contact/velocity_constraints.hpp"
 #include "evert/math/eigen_symmetric3.hpp"
 
 #include <algorithm>
@@ -106,6 +107,19 @@ PushOut push_out(std::span<const Bound> bounds) {
             change && obeys(*change, bounds, slack))
           return {*change};
   return {least_violation(bounds), true};
+}
+
+Mat3d tangent_of(std::span<const Bound> bounds) {
+  std::array<Vec3d, 3> normals{};
+  auto tangent = identity<double>();
+  std::size_t count = 0;
+  for (const auto& bound : bounds) {
+    if (count == normals.size()) break;  // a fourth independent direction does not exist
+    if (norm(tangent * bound.normal) < 1e-6) continue;
+    normals[count++] = bound.normal;
+    tangent = projector_off(std::span(normals).first(count));
+  }
+  return tangent;
 }
 
 void split_over(std::span<const Bound> bounds, const Mat3d& tangent, const Vec3d& vector,
