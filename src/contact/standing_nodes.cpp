@@ -16,7 +16,8 @@ constexpr double standstill = 1e-12;
 /// What takes the material of a body from `x` at the beginning of the step to where it is at the end [m/s].
 Vec3d velocity_of_way(const Obstacle& obstacle, const Vec3d& x, double dt) {
   const auto &before = obstacle.before(), &now = obstacle.state();
-  if (before.origin == now.origin && before.rotation == now.rotation) return {};  // and not what rounding says
+  if (before.origin == now.origin && before.rotation == now.rotation)
+    return {};  // and not what rounding says
   return (1 / dt) * (now.to_world(before.to_body(x)) - x);
 }
 
@@ -91,7 +92,8 @@ bool StandingNodes::stands_on(const Obstacle& obstacle, const Vec3d& x, const Ve
   if (obstacle.body() != nullptr) return false;  // it has a mass, and goes where the nodes let it go
   const auto& body = obstacle.before();
   const auto place = body.to_body(x);
-  if (std::abs(obstacle.surface().signed_distance(place)) > on_surface * (norm(x) + norm(place))) return false;
+  if (std::abs(obstacle.surface().signed_distance(place)) > on_surface * (norm(x) + norm(place)))
+    return false;
   const auto normal = body.rotation * obstacle.surface().normal(place), velocity = body.velocity_at(x);
   if (std::abs(dot(normal, v - velocity)) > standstill * (norm(v) + norm(velocity))) return false;
   if (dot(normal, f) >= 0) return false;

@@ -88,8 +88,8 @@ int HeldNodes::rub(System& system, DampingSolver& solver) {
 }
 
 /// The solver leaves a residual r of the equations, and with it momentum that nothing has exerted. The
-/// velocities that go with the damping forces at hand, v − M⁻¹ r, leave none: what obstacles gave is then what
-/// the nodes got, to rounding, at any tolerance of the solver.
+/// velocities that go with the damping forces at hand, v − M⁻¹ r, leave none: what obstacles gave is then
+/// what the nodes got, to rounding, at any tolerance of the solver.
 void HeldNodes::take_out_residual(System& system, std::span<const NodeConstraint> all,
                                   std::span<const double> reaction) {
   if (system.elastic.consistent_mass() != nullptr) return;  // M⁻¹ would be a solve of its own

@@ -40,8 +40,8 @@ class Collisions {
   [[nodiscard]] std::span<const std::unique_ptr<Obstacle>> obstacles() const { return obstacles_; }
 
   /// Before the solve that leads to x̃, at positions, velocities and forces at the beginning of the step: the
-  /// nodes that stand on obstacles. They collide in the resolve() that follows. Nodes in `prescribed` (sorted)
-  /// are left out.
+  /// nodes that stand on obstacles. They collide in the resolve() that follows. Nodes in `prescribed`
+  /// (sorted) are left out.
   const StandingNodes& find_standing(std::span<const double> x, std::span<const double> v,
                                      std::span<const double> f, std::span<const NodeConstraint> prescribed,
                                      const StepInterval& step);

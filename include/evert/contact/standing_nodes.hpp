@@ -15,9 +15,9 @@ struct NodalState {
   std::span<const double> f;       ///< elastic forces and weight [N]
 };
 
-/// Nodes that stand on obstacles: on the surface, not leaving it, and pressed on by the forces. The solve that
-/// leads to the end of the step has to know of them: it would else let them fall in, and pull what is near
-/// along.  docs/design/friction.md
+/// Nodes that stand on obstacles: on the surface, not leaving it, and pressed on by the forces. The solve
+/// that leads to the end of the step has to know of them: it would else let them fall in, and pull what is
+/// near along.  docs/design/friction.md
 class StandingNodes {
  public:
   /// Obstacles are kept by reference, and are to be moved to the end of the step before what follows.
@@ -32,8 +32,8 @@ class StandingNodes {
   /// Impulses of friction in half of the step on those that slide, parallel to constraints() [N s].
   [[nodiscard]] std::span<const Vec3d> friction() const { return friction_; }
 
-  /// Adds the bodies that a node, at `place` at the end of the step, stands on to those it is in, from `first`
-  /// on in the list. Once after each find(), nodes in rising order.
+  /// Adds the bodies that a node, at `place` at the end of the step, stands on to those it is in, from
+  /// `first` on in the list. Once after each find(), nodes in rising order.
   void add_touches(LocalIndex node, const Vec3d& place, std::size_t first, std::vector<Touch>& touches);
 
  private:
