@@ -1,8 +1,10 @@
 #include "evert/core/positive.hpp"
 #include "evert/mesh/boundary.hpp"
 #include "evert/mesh/generators.hpp"
+#include "evert/mesh/repair.hpp"
 
 #include "bcc_lattice.hpp"
+#include "hinges.hpp"
 #include "mesh_size.hpp"
 #include "number_text.hpp"
 #include <algorithm>
@@ -72,9 +74,11 @@ class Stuffing {
     lattice_.for_each_tetrahedron([this](const auto& points) { fill(points); });
     if (block_.nodes.empty())
       throw UserError("nothing is inside the " + name_ + " at this edge_length: choose a smaller one");
+    leave_out_specks();
     block_.region.assign(block_.nodes.size() / 4, 0);
     mesh_.cells.push_back(std::move(block_));
     mesh_.regions = {"body"};
+    drop_unused_nodes(mesh_);  // those of specks
     mesh_.node_sets.push_back({"surface", boundary_nodes(mesh_)});
     return std::move(mesh_);
   }
@@ -249,6 +253,26 @@ class Stuffing {
     auto& crossed = crossing(a, b);
     if (crossed.node < 0) crossed.node = add_node(crossed.position);
     return crossed.node;
+  }
+
+  /// Parts as thin as the lattice may come out as pieces that hang on an edge or a corner. Specks of such are
+  /// left out; without larger ones the body would not be the shape that was asked for.
+  void leave_out_specks() {
+    constexpr std::size_t speck = 400;  // of so many cells one
+    const auto cells = block_.nodes.size() / 4;
+    const auto hinged = hinged_pieces(block_.nodes);
+    if (hinged.empty()) return;
+    if (hinged.front().size() > cells / speck)
+      throw UserError("the " + name_ + " has parts too thin for this edge_length: " +
+                      std::to_string(hinged.front().size()) + " of " + std::to_string(cells) +
+                      " tetrahedra hang on an edge or a corner only; choose a smaller one");
+    std::vector<bool> kept(cells, true);
+    for (const auto& piece : hinged)
+      for (const auto cell : piece) kept[cell] = false;
+    std::vector<GlobalIndex> nodes;
+    for (std::size_t i = 0; i < block_.nodes.size(); ++i)
+      if (kept[i / 4]) nodes.push_back(block_.nodes[i]);
+    block_.nodes = std::move(nodes);
   }
 
   GlobalIndex add_node(const Vec3d& position) {

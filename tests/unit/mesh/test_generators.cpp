@@ -2,6 +2,7 @@
 #include "evert/mesh/generators.hpp"
 #include "evert/mesh/quality.hpp"
 #include "evert/mesh/repair.hpp"
+#include "evert/shapes/figure.hpp"
 #include "evert/shapes/gear.hpp"
 #include "evert/shapes/solids.hpp"
 
@@ -263,6 +264,7 @@ TEST(Generators, refuse_impossible_sizes) {
   };
   expect([&] { return generate(constant(nan), "hole", 0.5); }, "gives no number at");
   expect([&] { return generate(constant(1), "void", 0.5); }, "nothing is inside");
+  expect([&] { return generate(*figure(1), "figure", 0.05); }, "hang on an edge or a corner only");
   expect([&] { return generate(constant(-1), "all", 0.5); }, "reaches out of the box");
   expect(
       [&] {
