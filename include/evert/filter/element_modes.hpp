@@ -33,6 +33,7 @@ struct ElementModes {
   Vec3d shears;         ///< those of the shear of the pair without axis k [1/s²]
 
   [[nodiscard]] double largest() const { return std::max({stretches[2], shears[0], shears[1], shears[2]}); }
+  [[nodiscard]] double smallest() const { return std::min({stretches[0], shears[0], shears[1], shears[2]}); }
 };
 
 [[nodiscard]] ElementModes element_modes(const TetShape& shape, const TetMasses& masses, const Lame& lame);
