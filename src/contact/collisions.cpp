@@ -32,18 +32,12 @@ bool is_turned(const Vec3d& motion, const Vec3d& sliding) {
   return dot(motion, sliding) < 0.5 * norm(motion) * norm(sliding);
 }
 
-/// P: off the normals of all bounds.
-Mat3d tangent_of(std::span<const Bound> bounds) {
-  std::array<Vec3d, 3> normals{};
-  auto tangent = identity<double>();
-  std::size_t count = 0;
-  for (const auto& bound : bounds) {
-    if (count == normals.size()) break;  // a fourth independent direction does not exist
-    if (norm(tangent * bound.normal) < 1e-6) continue;
-    normals[count++] = bound.normal;
-    tangent = projector_off(std::span(normals).first(count));
-  }
-  return tangent;
+/// True where the cones of friction of two bodies see each other along the normals: pressed together, the
+/// bodies then hold what is between them, and it cannot slip out of the gap.
+bool grips(const Vec3d& normal, double friction, const Vec3d& other, double other_friction) {
+  const double cosine = -dot(normal, other);
+  return cosine > 0 &&
+         cosine * std::hypot(1, friction) * std::hypot(1, other_friction) >= 1 - friction * other_friction;
 }
 
 double angle_between(const Mat3d& a, const Mat3d& b) {
@@ -54,6 +48,7 @@ double angle_between(const Mat3d& a, const Mat3d& b) {
 
 Collisions::Collisions(std::vector<std::unique_ptr<Obstacle>> obstacles, std::span<const double> masses)
     : obstacles_(std::move(obstacles)),
+      standing_(obstacles_, masses.size()),
       masses_(masses),
       given_(obstacles_.size()),
       warned_(obstacles_.size()) {
@@ -91,6 +86,18 @@ void Collisions::share_out(auto&& impulse) {
   }
 }
 
+// --- from xⁿ to x̃
+
+const StandingNodes& Collisions::find_standing(std::span<const double> x, std::span<const double> v,
+                                               std::span<const double> f,
+                                               std::span<const NodeConstraint> prescribed,
+                                               const StepInterval& step) {
+  for (const auto& obstacle : obstacles_)
+    if (obstacle->body() == nullptr) obstacle->move_to(step);
+  standing_.find({masses_, x, v, f}, prescribed, step.dt);
+  return standing_;
+}
+
 // --- from x̃ to xⁿ⁺¹
 
 void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<const double> predicted,
@@ -104,7 +111,7 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
   const auto nodes = static_cast<LocalIndex>(masses_.size());
   for (LocalIndex begin = 0; begin < nodes; begin += chunk) {
     const auto end = std::min(begin + chunk, nodes);
-    const auto near = search_.near(box_of(begin, end, x, predicted, step.dt));
+    const auto near = search_.near(around(box_of(begin, end, x, predicted, step.dt)));
     if (near.empty()) continue;
     auto fixed = std::lower_bound(prescribed.begin(), prescribed.end(), begin,
                                   [](const NodeConstraint& c, LocalIndex node) { return c.node < node; });
@@ -114,6 +121,7 @@ void Collisions::resolve(std::span<double> x, std::span<double> v, std::span<con
       resolve_node(node, x, v, predicted, near, step.dt);
     }
   }
+  standing_.clear();
   share_out([](const Contact& contact) { return contact.impulse; });
 }
 
@@ -136,6 +144,7 @@ void Collisions::resolve_node(LocalIndex node, std::span<double> x, std::span<do
   Way way{reached - dt * led, reached};
   Contact contact{.node = node, .first_touch = touches_.size()};
   search_.find(way, near, touches_);
+  standing_.add_touches(node, way.to, contact.first_touch, touches_);
   if (touches_.size() == contact.first_touch) return;
 
   const auto out = leave(contact, way, near);
@@ -188,6 +197,7 @@ PushOut Collisions::leave(Contact& contact, const Way& way, std::span<const std:
   for (int round = 0; round < most_rounds; ++round) {
     bounds_.clear();
     contact.touches = touches_.size() - contact.first_touch;
+    face_each_other(std::span(touches_).subspan(contact.first_touch));
     for (const auto& touch : touches_of(contact)) bounds_.push_back({touch.normal, touch.depth});
     out = push_out(bounds_);
     if (out.pinched || round + 1 == most_rounds || !search_.find_after(way, out.change, near, touches_))
@@ -195,6 +205,27 @@ PushOut Collisions::leave(Contact& contact, const Way& way, std::span<const std:
   }
   contact.tangent = tangent_of(bounds_);
   return out;
+}
+
+/// Two bodies that grip what is between them press along one line, the mean of their normals. By the normals
+/// themselves a node between two surfaces that close in at an angle would be moved out of the gap, which
+/// their friction forbids, and all the way to where they meet.
+void Collisions::face_each_other(std::span<Touch> touches) const {
+  double most_opposed = 0;
+  Touch *one = nullptr, *other = nullptr;
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    for (std::size_t j = i + 1; j < touches.size(); ++j) {
+      const auto &a = touches[i], &b = touches[j];
+      const double cosine = dot(a.normal, b.normal);
+      if (cosine >= most_opposed || !grips(a.normal, friction(a), b.normal, friction(b))) continue;
+      most_opposed = cosine, one = &touches[i], other = &touches[j];
+    }
+  if (one == nullptr) return;
+  const auto apart = one->normal - other->normal;
+  const double size = norm(apart);
+  for (auto* touch : {one, other}) touch->depth *= 2 / size;  // along a line that is oblique to the surface
+  one->normal = (1 / size) * apart;
+  other->normal = (-1 / size) * apart;
 }
 
 /// Of the bodies, weighted with their coefficients of friction; plain where none has any.

@@ -29,6 +29,7 @@ void Obstacle::move_to(const StepInterval& step) {
   const auto was = placed(surface_->bounds(), before_.rotation, before_.origin);
   bounds_.include(was.lower);
   bounds_.include(was.upper);
+  if (!is_there()) bounds_ = {};
 }
 
 }  // namespace evert

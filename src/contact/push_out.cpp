@@ -1,5 +1,8 @@
 #include "evert/contact/push_out.hpp"
 
+#include "evert/contact/velocity_constraints.hpp"
+#include "evert/math/eigen_symmetric3.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,23 +44,43 @@ std::optional<Vec3d> on_three(const Bound& a, const Bound& b, const Bound& c) {
   return point;
 }
 
+double violation(std::span<const Bound> bounds, const Vec3d& change) {
+  double sum = 0;
+  for (const auto& bound : bounds) sum += std::pow(std::max(0.0, bound.least - dot(bound.normal, change)), 2);
+  return sum;
+}
+
+/// The shortest of the vectors that solve a · vector = right best; `a` of normals, whose eigenvalues are
+/// shares of one.
+Vec3d solve_best(const Mat3d& a, const Vec3d& right) {
+  constexpr double none = 1e-9;
+  const auto eigen = eigen_symmetric3(a);
+  Vec3d solution{};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const auto mode = eigen.vectors.column[k]; eigen.values[k] > none)
+      solution += (dot(mode, right) / eigen.values[k]) * mode;
+  return solution;
+}
+
 /// min Σ max(0, least_k − n_k · d)² by Newton's method on the set of violated bounds; the smallest such d.
 Vec3d least_violation(std::span<const Bound> bounds) {
   constexpr int most_rounds = 20;
-  constexpr double ridge = 1e-9;
   Vec3d change{};
   for (int round = 0; round < most_rounds; ++round) {
-    auto matrix = ridge * identity<double>();
+    Mat3d matrix{};
     Vec3d right{};
     for (const auto& bound : bounds) {
       if (dot(bound.normal, change) > bound.least) continue;
       matrix += outer(bound.normal, bound.normal);
       right += bound.least * bound.normal;
     }
-    const auto next = inverse(matrix) * right;
-    const bool settled = norm(next - change) <= tolerance * norm(next);
-    change = next;
-    if (settled) break;
+    auto way = solve_best(matrix, right) - change;
+    // Where other bounds are violated at its end a step may be too long, and sets of bounds could take turns.
+    // Differences that rounding makes do not count: near the minimum they would stop the last step.
+    const double most = (1 + 1e-9) * violation(bounds, change);
+    while (violation(bounds, change + way) > most) way = 0.5 * way;
+    change += way;
+    if (norm(way) <= tolerance * norm(change)) break;
   }
   return change;
 }
@@ -84,6 +107,19 @@ PushOut push_out(std::span<const Bound> bounds) {
             change && obeys(*change, bounds, slack))
           return {*change};
   return {least_violation(bounds), true};
+}
+
+Mat3d tangent_of(std::span<const Bound> bounds) {
+  std::array<Vec3d, 3> normals{};
+  auto tangent = identity<double>();
+  std::size_t count = 0;
+  for (const auto& bound : bounds) {
+    if (count == normals.size()) break;  // a fourth independent direction does not exist
+    if (norm(tangent * bound.normal) < 1e-6) continue;
+    normals[count++] = bound.normal;
+    tangent = projector_off(std::span(normals).first(count));
+  }
+  return tangent;
 }
 
 void split_over(std::span<const Bound> bounds, const Mat3d& tangent, const Vec3d& vector,

@@ -30,6 +30,22 @@ HeldNodes::HeldNodes(const System& system) {
   if (!system.rigid.empty()) coupling_.emplace(system);
 }
 
+std::span<const NodeConstraint> HeldNodes::hold_on_the_way(System& system, double dt, Vec right) {
+  const PhaseScope scope(Phase::contact);
+  const auto prescribed = system.prescribed.at(system.time + dt / 2);
+  if (!system.collisions.any_obstacles()) return prescribed;
+  const auto& standing = system.collisions.find_standing(system.x.owned(), system.v.owned(), system.f.owned(),
+                                                         prescribed, {system.time + dt, dt});
+  PetscScalar* impulses = nullptr;
+  check(VecGetArray(right, &impulses));
+  for (std::size_t i = 0; i < standing.constraints().size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      impulses[3 * standing.constraints()[i].node + static_cast<LocalIndex>(k)] += standing.friction()[i][k];
+  check(VecRestoreArray(right, &impulses));
+  join(prescribed, standing.constraints(), constraints_);
+  return constraints_;
+}
+
 HeldNodes::Kinds HeldNodes::collide(System& system, const NodeField& predicted, double dt) {
   const PhaseScope scope(Phase::contact);
   constraints_.clear();
@@ -67,7 +83,26 @@ int HeldNodes::rub(System& system, DampingSolver& solver) {
   system.v.touched();
   collisions.share_impulses(reaction, prescribed_, constraints_);
   system.impulses.constraint += exerted(prescribed_, reaction);
+  take_out_residual(system, constraints_, reaction);
   return iterations;
+}
+
+/// The solver leaves a residual r of the equations, and with it momentum that nothing has exerted. The
+/// velocities that go with the damping forces at hand, v − M⁻¹ r, leave none: what obstacles gave is then
+/// what the nodes got, to rounding, at any tolerance of the solver.
+void HeldNodes::take_out_residual(System& system, std::span<const NodeConstraint> all,
+                                  std::span<const double> reaction) {
+  if (system.elastic.consistent_mass() != nullptr) return;  // M⁻¹ would be a solve of its own
+  const auto mass = system.masses();
+  const auto v = system.v.owned();
+  auto held = all.begin();
+  for (std::size_t node = 0; node < mass.size(); ++node) {
+    const auto index = static_cast<LocalIndex>(node);
+    auto residual = node_value(reaction, index);
+    if (held != all.end() && held->node == index) residual = (held++)->free * residual;
+    set_node_value(v, index, node_value(v, index) - (1 / mass[node]) * residual);
+  }
+  system.v.touched();
 }
 
 /// Takes the rigid bodies that have a mass to the velocities that go with what the nodes do, and the nodes to

@@ -52,8 +52,9 @@ int Newmark::predict(System& system, double dt) {
   std::copy(v.begin(), v.end(), predicted_.owned().begin());
   predicted_.touched();
   follow_forces(system);
-  const int iterations = solver_.solve(dt / 2, right_.get(), predicted_,
-                                       system.prescribed.at(system.time + dt / 2), system.v_change.vec());
+  const int iterations =
+      solver_.solve(dt / 2, right_.get(), predicted_, held_.hold_on_the_way(system, dt, right_.get()),
+                    system.v_change.vec());
   remember_change(system, predicted_.owned(), v);
   const PhaseScope scope(Phase::vector_update, 2.0 * static_cast<double>(v.size()));
   auto x = system.x.owned();

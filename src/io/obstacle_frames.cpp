@@ -61,7 +61,8 @@ std::vector<WrittenObstacle> ObstacleFrames::known(const Hdf5File& file, const s
 std::vector<WrittenObstacle> ObstacleFrames::write(Hdf5File& file, const std::string& frame) {
   bool begun = false;
   for (auto& [obstacle, surface, written, table] : shown_) {
-    const auto& state = obstacle->state();
+    auto state = obstacle->state();
+    if (!obstacle->is_there()) state = {.rotation = {}};  // shrunk to a point: not seen
     if (written && state.rotation == written->rotation && state.origin == written->origin) continue;
     if (!begun) file.create_group(frame + "/obstacles");
     begun = true;

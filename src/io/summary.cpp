@@ -41,17 +41,11 @@ JsonValue versions() {
        {"hdf5", dotted(hdf5_major, hdf5_minor, hdf5_patch)}});
 }
 
-/// Collective. Wall seconds by phase: mean over the ranks, and that of the rank that spent most.
-JsonValue phases(MPI_Comm comm) {
-  const auto& mine = phase_seconds();
-  std::array<double, phase_count> sum{};
-  std::array<double, phase_count> largest{};
-  MPI_Allreduce(mine.data(), sum.data(), phase_count, MPI_DOUBLE, MPI_SUM, comm);
-  MPI_Allreduce(mine.data(), largest.data(), phase_count, MPI_DOUBLE, MPI_MAX, comm);
+JsonValue phases(const PhaseTimes& times) {
   std::vector<std::pair<std::string, JsonValue>> members;
   for (std::size_t phase = 0; phase < phase_count; ++phase)
     members.emplace_back(name_of(static_cast<Phase>(phase)),
-                         JsonValue::object({{"mean", sum[phase] / size_of(comm)}, {"max", largest[phase]}}));
+                         JsonValue::object({{"mean", times.mean[phase]}, {"max", times.max[phase]}}));
   return JsonValue::object(members);
 }
 
@@ -95,6 +89,15 @@ JsonValue shape_errors(const RunSummary& summary) {
 
 }  // namespace
 
+PhaseTimes phase_times(MPI_Comm comm) {
+  const auto& mine = phase_seconds();
+  PhaseTimes times;
+  MPI_Allreduce(mine.data(), times.mean.data(), phase_count, MPI_DOUBLE, MPI_SUM, comm);
+  MPI_Allreduce(mine.data(), times.max.data(), phase_count, MPI_DOUBLE, MPI_MAX, comm);
+  for (double& seconds : times.mean) seconds /= size_of(comm);
+  return times;
+}
+
 std::int64_t peak_memory() {
   rusage usage{};
   static_cast<void>(getrusage(RUSAGE_SELF, &usage));
@@ -102,7 +105,6 @@ std::int64_t peak_memory() {
 }
 
 void write_summary(MPI_Comm comm, const std::string& path, const RunSummary& summary) {
-  const auto seconds = phases(comm);
   const auto memory = memory_by_rank(comm);
   on_root(comm, [&] {
     const auto json = JsonValue::object(
@@ -119,7 +121,7 @@ void write_summary(MPI_Comm comm, const std::string& path, const RunSummary& sum
          {"ksp_iterations", summary.linear_iterations},
          {"simulated_seconds", summary.simulated_time},
          {"wall_seconds", summary.wall_time},
-         {"phase_seconds", seconds},
+         {"phase_seconds", phases(summary.phases)},
          {"max_inverted",
           JsonValue::object({{"points", summary.max_inverted_points}, {"time", summary.max_inverted_time}})},
          {"final", final_state(summary.final_state)},

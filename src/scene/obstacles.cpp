@@ -52,8 +52,10 @@ std::unique_ptr<Obstacle> obstacle_of(const ObstacleConfig& config, const Surfac
     auto body = rigid_body_of(config, *solid, start);
     return std::make_unique<Obstacle>(config.name, config.friction, std::move(solid), std::move(body));
   }
-  return std::make_unique<Obstacle>(config.name, config.friction, std::move(solid),
-                                    motion_of(config, start, keys));
+  auto obstacle = std::make_unique<Obstacle>(config.name, config.friction, std::move(solid),
+                                             motion_of(config, start, keys));
+  if (config.until) obstacle->remove_after(*config.until);
+  return obstacle;
 }
 
 }  // namespace

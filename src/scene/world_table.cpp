@@ -88,6 +88,7 @@ void finish_obstacle(ObstacleConfig& obstacle, const Value& map, const std::stri
   for (const char* mass : {"mass", "density"})
     for (const char* motion : {"velocity", "motion"})
       exclude(motion, mass, ": what has a mass moves by the forces on it, from 'initial_velocity' on");
+  for (const char* mass : {"mass", "density"}) exclude("until", mass, ": what has a mass stays");
   const bool rigid_body = obstacle.mass || obstacle.density;
   for (const char* mass : {"mass", "density"})
     if (map.find(mass) != nullptr && std::holds_alternative<HalfSpaceShape>(obstacle.shape.solid))
@@ -122,6 +123,8 @@ const Table<ObstacleConfig>& obstacle_table() {
         .optional("velocity", &ObstacleConfig::velocity, vector3("m/s"), "[0, -1, 0]", "Constant.")
         .optional("motion", &ObstacleConfig::motion, table_of(motion_table()),
                   "{angular_velocity: [0, 0, 2]}", "Any other motion, in the place of velocity.")
+        .either("until", &ObstacleConfig::until, number("s", above(0)), "2",
+                "It is taken away then; without it, never.")
         .either("mass", &ObstacleConfig::mass, number("kg", above(0)), "5",
                 "With a mass it is a rigid body: gravity, nodes and other obstacles move it.")
         .either("density", &ObstacleConfig::density, number("kg/m^3", above(0)), "1000",

@@ -41,6 +41,8 @@ const std::vector<Case> cases{
              {"obstacles.ball.mass: excludes 'velocity'", "'initial_velocity'"}),
     bad_ball("rigid_mass_and_motion", ", mass: 1, motion: {velocity: [0, 1, 0]}",
              {"obstacles.ball.mass: excludes 'motion'"}),
+    bad_ball("rigid_mass_and_until", ", mass: 1, until: 2",
+             {"obstacles.ball.mass: excludes 'until': what has a mass stays"}),
     bad_ball("rigid_initial_velocity_without_mass", ", initial_velocity: [0, 1, 0]",
              {"obstacles.ball.initial_velocity: goes with 'mass' or 'density' only"}),
     bad_ball("rigid_initial_velocity_of_two", ", mass: 1, initial_velocity: [0, 1]",

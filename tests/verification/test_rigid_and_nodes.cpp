@@ -183,9 +183,9 @@ TEST(MovingObstacles, ABlockIsPulledByABeltWhateverTheMethod) {
         block_on("velocity: [1.5, 0, 0]"),
         {std::string("integrator.method=") + method, "bodies.block.damping.stiffness_proportional=2e-4"});
     auto& simulation = *scene.simulation;
-    run_until(simulation, 0.2);
+    test::run_until(simulation, 0.2);
     const double first = simulation.measure().momentum[0] / mass;
-    run_until(simulation, 0.4);
+    test::run_until(simulation, 0.4);
     const double second = simulation.measure().momentum[0] / mass;
     test::verify(std::string("block carried by a belt, ") + method + ": acceleration over mu g", "1",
                  (second - first) / 0.2 / pull, "0.99 to 1.01");

@@ -2,6 +2,7 @@
 #include "evert/contact/contact_search.hpp"
 #include "evert/contact/obstacle.hpp"
 #include "evert/contact/push_out.hpp"
+#include "evert/contact/standing_nodes.hpp"
 #include "evert/contact/velocity_constraints.hpp"
 
 #include <memory>
@@ -37,6 +38,13 @@ class Collisions {
   [[nodiscard]] bool any_obstacles() const { return !obstacles_.empty(); }
   [[nodiscard]] Obstacle* find(const std::string& name) const;
   [[nodiscard]] std::span<const std::unique_ptr<Obstacle>> obstacles() const { return obstacles_; }
+
+  /// Before the solve that leads to x̃, at positions, velocities and forces at the beginning of the step: the
+  /// nodes that stand on obstacles. They collide in the resolve() that follows. Nodes in `prescribed`
+  /// (sorted) are left out.
+  const StandingNodes& find_standing(std::span<const double> x, std::span<const double> v,
+                                     std::span<const double> f, std::span<const NodeConstraint> prescribed,
+                                     const StepInterval& step);
 
   /// Step 3 of PHYSICS 5, on the owned nodes (x y z each). `x` holds x̃ and gets xⁿ⁺¹, `v` holds vⁿ and gets
   /// ṽⁿ; `predicted` is the velocity ṽ that led to x̃. A colliding node is moved to the surface and keeps only
@@ -104,6 +112,7 @@ class Collisions {
   void resolve_node(LocalIndex node, std::span<double> x, std::span<double> v,
                     std::span<const double> predicted, std::span<const std::size_t> near, double dt);
   PushOut leave(Contact& contact, const Way& way, std::span<const std::size_t> near);
+  void face_each_other(std::span<Touch> touches) const;
   void constrain(const Contact& contact, Vec3d v);
   Contact after_solve(Contact contact, const Vec3d& velocity, const Vec3d& reaction);
   void share_out(auto&& impulse);
@@ -119,6 +128,7 @@ class Collisions {
 
   std::vector<std::unique_ptr<Obstacle>> obstacles_;
   ContactSearch search_{obstacles_};
+  StandingNodes standing_;
   std::span<const double> masses_;
   std::vector<Contact> contacts_;            // by node
   std::vector<Touch> touches_;               // by contact

@@ -13,6 +13,12 @@ struct Way {
   Vec3d from, to;
 };
 
+/// A box with what rounding may put beside it: of the distances involved.
+inline constexpr double on_surface = 1e-10;
+[[nodiscard]] inline Box3 around(const Box3& box) {
+  return box.grown(on_surface * (norm(box.lower) + norm(box.upper)));
+}
+
 /// A body that a node is in, or on.
 struct Touch {
   std::size_t obstacle;  ///< its number

@@ -2,6 +2,7 @@
 #include "evert/contact/rigid_body.hpp"
 #include "evert/shapes/implicit_surface.hpp"
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -25,6 +26,10 @@ class Obstacle {
 
   /// Takes the body to the end of `step`. What follows speaks of there.
   void move_to(const StepInterval& step);
+
+  /// Later than `time` [s] it is not there: its bounds are empty, and nothing collides with it.
+  void remove_after(double time) { until_ = time; }
+  [[nodiscard]] bool is_there() const { return step_.end <= until_; }
 
   /// Contains the body at both ends of the step.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
@@ -61,6 +66,7 @@ class Obstacle {
   std::unique_ptr<ImplicitSurface> surface_;
   std::unique_ptr<RigidMotion> motion_;
   RigidBody* body_ = nullptr;  // motion_, where it is one
+  double until_ = std::numeric_limits<double>::infinity();
   StepInterval step_;
   RigidState before_, now_;
   Box3 bounds_;

@@ -22,6 +22,9 @@ struct PushOut {
 };
 [[nodiscard]] PushOut push_out(std::span<const Bound> bounds);
 
+/// The projector off the normals of all bounds.
+[[nodiscard]] Mat3d tangent_of(std::span<const Bound> bounds);
+
 /// The shares s of a vector in the span of the normals: vector = Σ s_k n_k, with the smallest Σ s_k² where
 /// that is not unique. `tangent` is the projector off all normals.
 void split_over(std::span<const Bound> bounds, const Mat3d& tangent, const Vec3d& vector,

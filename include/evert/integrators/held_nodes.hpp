@@ -23,6 +23,11 @@ class HeldNodes {
     bool prescribed = false;
     [[nodiscard]] bool any() const { return colliding || prescribed; }
   };
+  /// What the solve for the velocity that leads to x̃ is to keep: prescribed motion in the middle of a step of
+  /// `dt` [s], and nodes that stand on obstacles. Valid until the next call. The friction on those that slide
+  /// goes to `right`, impulses.
+  std::span<const NodeConstraint> hold_on_the_way(System& system, double dt, Vec right);
+
   /// Collective. Obstacles go to the end of the step, collisions turn x̃ into xⁿ⁺¹ and vⁿ into ṽⁿ; `predicted`
   /// is the velocity that led to x̃ in `dt` [s].
   Kinds collide(System& system, const NodeField& predicted, double dt);
@@ -41,6 +46,8 @@ class HeldNodes {
 
  private:
   int couple(System& system, DampingSolver& solver);
+  static void take_out_residual(System& system, std::span<const NodeConstraint> all,
+                                std::span<const double> reaction);
 
   std::optional<RigidCoupling> coupling_;       // where a rigid body has a mass
   std::span<const NodeConstraint> prescribed_;  // at the end of the step; system.prescribed owns them

@@ -1,15 +1,24 @@
 #pragma once
 #include "evert/core/index.hpp"
+#include "evert/core/log.hpp"
 #include "evert/sim/simulation.hpp"
 
 #include <mpi.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace evert {
+
+/// Wall seconds booked to each phase, over the ranks.
+struct PhaseTimes {
+  std::array<double, phase_count> mean{}, max{};
+};
+/// Collective. Of all ranks of `comm`, so far.
+[[nodiscard]] PhaseTimes phase_times(MPI_Comm comm);
 
 /// What a run leaves behind about itself. The application fills it.
 struct RunSummary {
@@ -30,12 +39,12 @@ struct RunSummary {
   Measurements final_state;
   std::vector<std::pair<std::string, double>> shape_errors;  ///< per body: rms distance to its rest shape [m]
   std::vector<std::pair<std::string, ObstacleImpulse>> obstacles;  ///< what each gave, since the start
+  PhaseTimes phases;
   std::string cpu_level;  ///< instruction set of the kernels: x86-64-v2, -v3 or -v4
 };
 
-/// Collective. Writes summary.json in one step: the above, the wall time booked to each phase (mean and
-/// largest over the ranks), peak memory of each rank, number of ranks, versions of evert, PETSc, MPI and
-/// HDF5. Throws UserError on all ranks when it cannot be written.
+/// Collective. Writes summary.json in one step: the above, peak memory of each rank, number of ranks,
+/// versions of evert, PETSc, MPI and HDF5. Throws UserError on all ranks when it cannot be written.
 void write_summary(MPI_Comm comm, const std::string& path, const RunSummary& summary);
 
 /// Largest resident size of this process so far [bytes].

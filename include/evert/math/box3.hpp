@@ -16,6 +16,11 @@ struct Box3 {
     return {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
   }
 
+  /// By `width` on every side.
+  [[nodiscard]] Box3 grown(double width) const {
+    const Vec3d all{width, width, width};
+    return {lower - all, upper + all};
+  }
   void include(const Vec3d& point) {
     for (std::size_t k = 0; k < 3; ++k) {
       lower[k] = std::min(lower[k], point[k]);

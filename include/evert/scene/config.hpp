@@ -194,6 +194,7 @@ struct ObstacleConfig {
   double friction = 0;  ///< [-] Coulomb coefficient ≥ 0
   Vec3d velocity{};     ///< [m/s] constant; not with motion
   std::optional<MotionConfig> motion;
+  std::optional<double> until;  ///< [s] it is there until then; not with mass or density
   // Of a rigid body that moves by the forces on it, which has exactly one of mass and density:
   std::optional<double> mass;        ///< [kg] > 0
   std::optional<double> density;     ///< [kg/m^3] > 0

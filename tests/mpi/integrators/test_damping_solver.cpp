@@ -8,6 +8,7 @@
 
 #include "deformed_box.hpp"
 #include "tests/support/petsc_options.hpp"
+#include "tests/support/verify.hpp"
 #include <cmath>
 #include <memory>
 #include <random>
@@ -85,6 +86,21 @@ TEST_P(EveryOperator, SolvesWithTheConstraintsHeldExactly) {
     const auto v = node_value(v_.owned(), c.node);
     EXPECT_LE(norm(v - c.free * v - c.prescribed), 1e-12);
   }
+}
+
+TEST_P(EveryOperator, ConstraintsHardlyCostIterations) {
+  const test::Options mat{{"-damping_mat_type", GetParam().mat_type}};
+  const test::Options pc{{"-damping_pc_type", GetParam().pc_type}};
+  DampingSolver free(mesh_, elastic_), constrained(mesh_, elastic_);
+  NodeField v(mesh_);
+  const int without = free.solve(0.01, right_.get(), v, {});
+  const int with = constrained.solve(0.01, right_.get(), v_, constraints());
+  const double ratio = static_cast<double>(with) / without;
+  test::verify(std::string("CG iterations with constraints over those without, ") + GetParam().mat_type +
+                   ", " + GetParam().pc_type,
+               "<= 1.3", ratio, "-");
+  EXPECT_GE(without, 4) << "else the comparison says nothing";
+  EXPECT_LE(ratio, 1.3);
 }
 
 TEST_P(EveryOperator, SolvesAgainAfterTheMaterialMoved) {

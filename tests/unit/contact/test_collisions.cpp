@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -228,6 +229,30 @@ TEST(Collisions, APinchedNodeStopsBetweenTheBodiesAndGoesWithThem) {
   EXPECT_NEAR(v[0], 0, 1e-8);
   EXPECT_NEAR(v[1], 3, 1e-12);
   EXPECT_EQ(collisions.constraints().front().free, Mat3d{});
+}
+
+/// Where a node ends that was led into the tip of a wedge, at (0, −0.2), that opens upward by 40 degrees and
+/// moves downward at 2 m/s.
+std::vector<double> after_a_wedge(double friction) {
+  const double angle = 20 * std::numbers::pi / 180, across = std::cos(angle), up = std::sin(angle);
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
+  obstacles.push_back(half_space("left", friction, {{across, up, 0}}, {{0, -2, 0}}));
+  obstacles.push_back(half_space("right", friction, {{-across, up, 0}}, {{0, -2, 0}}));
+  const std::vector<double> mass{1.0};
+  Collisions collisions(std::move(obstacles), mass);
+  std::vector<double> x{0.01, -0.25, 0}, v{0, -1, 0};
+  const auto predicted = v;
+  collisions.resolve(x, v, predicted, {}, step);
+  return x;
+}
+
+TEST(Collisions, RoughBodiesThatCloseInAtAnAngleTakeTheNodeAlong) {
+  const auto gripped = after_a_wedge(0.4);  // by more than tan(20 degrees)
+  EXPECT_NEAR(gripped[0], 0, 1e-9) << "in the middle";
+  EXPECT_NEAR(gripped[1], -0.15 - 0.1 * 2, 1e-12) << "with the bodies";
+  const auto slipped = after_a_wedge(0.3);
+  EXPECT_NEAR(slipped[0], 0, 1e-12);
+  EXPECT_NEAR(slipped[1], -0.2, 1e-12) << "out of them";
 }
 
 TEST(Collisions, CatchNodesThatAStepTakesThroughABody) {

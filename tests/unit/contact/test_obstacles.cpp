@@ -35,6 +35,17 @@ TEST(Obstacle, MovesWithItsVelocity) {
   EXPECT_NEAR(norm(rising.mean_velocity({{1, 2, 3}}) - Vec3d{3, 2, 0}), 0, 1e-14);
 }
 
+TEST(Obstacle, IsNotThereAfterItIsTakenAway) {
+  auto plane = moving(HalfSpace({}, {{0, 1, 0}}), {});
+  plane.remove_after(0.3);
+  plane.move_to({.end = 0.3, .dt = 0.1});
+  EXPECT_TRUE(plane.bounds().contains({{1, -1, 0}}));
+  plane.move_to({.end = 0.4, .dt = 0.1});
+  EXPECT_FALSE(plane.is_there());
+  EXPECT_FALSE(plane.bounds().contains({{1, -1, 0}}));
+  EXPECT_FALSE(plane.bounds().overlaps({{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}}));
+}
+
 TEST(Obstacle, ContainsItsSurfaceInItsBounds) {
   auto ball = moving(Sphere(0.5), {.origin = {1, 2, 3}, .velocity = {-1, 0, 0}});
   ball.move_to({.end = 2, .dt = 0.1});

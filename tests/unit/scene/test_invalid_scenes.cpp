@@ -36,7 +36,7 @@ const std::vector<Mistake> mistakes{
      "scene.yaml:36: obstacles.ball.shpe: unknown key (did you mean 'shape'?)"},
     {"key_of_another_shape", "radius: 4", "radius: 4, normal: [0, 1, 0]",
      "scene.yaml:36: obstacles.ball.normal: does not go with 'shape: sphere'; known there are shape, radius, "
-     "center, rotate, grow, friction, velocity, motion, mass, density, initial_velocity or "
+     "center, rotate, grow, friction, velocity, motion, until, mass, density, initial_velocity or "
      "initial_angular_velocity"},
     {"merge_key", "density: 1000", "<<: {density: 1000}",
      "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, order, transform, "
