@@ -34,6 +34,10 @@ evert mesh generate SHAPE ... -o OUT     make a mesh and print its quality; leng
   figure       [-height H]
   mesh         -surface FILE [-scale S]     what a closed surface (.obj, .stl, .ply, .off) encloses
   union, intersection, difference   -of '[{shape: ..., ...}, ...]'
+  With bad elements, for the modal filter:
+  wedge_stack  [-edge_length E] [-edge_ratio R] [-layers N]
+  cut_cube     [-size S] [-cells N] [-normal X,Y,Z] [-through X,Y,Z] [-snap S]
+  sliver_ball  -radius R [-slivers SHARE] [-jitter J] [-thinnest T] [-seed N]
 evert mesh convert IN OUT [options]      read any format, write another
   -reorient                              mirror the cells of negative volume
   -drop_unused                           leave out nodes that no cell uses

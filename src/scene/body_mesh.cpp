@@ -27,6 +27,10 @@ Mesh make(const FilledShape& filled) {
   return mesh;
 }
 
+Mesh make(const WedgeStack& stack) { return generate_wedge_stack(stack); }
+Mesh make(const CutCube& cube) { return generate_cut_cube(cube); }
+Mesh make(const SliverBall& ball) { return generate_sliver_ball(ball); }
+
 }  // namespace
 
 Mesh make_body_mesh(const MeshConfig& mesh, std::string_view cell_vectors) {

@@ -98,8 +98,18 @@ std::string fibre_field(const BodyConfig& body) {
   return field == nullptr ? "" : field->field;
 }
 
+/// What is read from a file names the file when it is wrong; what is generated does not say where it stands.
+Mesh source_mesh(const BodyConfig& body) {
+  if (std::holds_alternative<FileMesh>(body.mesh)) return make_body_mesh(body.mesh, fibre_field(body));
+  try {
+    return make_body_mesh(body.mesh);
+  } catch (const UserError& error) {
+    throw UserError("bodies." + body.name + ".mesh: " + error.what());
+  }
+}
+
 Mesh body_mesh(const BodyConfig& body) {
-  Mesh mesh = make_body_mesh(body.mesh, fibre_field(body));
+  Mesh mesh = source_mesh(body);
   if (const auto* file = std::get_if<FileMesh>(&body.mesh)) keep_groups(mesh, file->groups, body.name);
   drop_unused_nodes(mesh);
   if (mesh.cell_count() == 0) throw UserError("bodies." + body.name + ".mesh: no volume cell is left");

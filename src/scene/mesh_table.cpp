@@ -103,6 +103,55 @@ const Table<BoxMesh>& box_mesh() {
   return table;
 }
 
+const Table<WedgeStack>& wedge_stack() {
+  static const auto table =
+      Table<WedgeStack>(
+          "Flat prisms of three wedges each between two regular tetrahedra along z: elements that make steps "
+          "short. The tips are the node sets z_min and z_max.")
+          .optional("edge_length", &WedgeStack::edge_length, length(), "2", "Of the two tetrahedra.")
+          .optional("edge_ratio", &WedgeStack::edge_ratio, number("-", above_up_to(0, 1e6)), "80",
+                    "edge_length over the short edges of the wedges.")
+          .optional("layers", &WedgeStack::layers, integer(1, 1'000'000), "3", "Prisms.");
+  return table;
+}
+
+const Table<CutCube>& cut_cube() {
+  static const auto table =
+      Table<CutCube>(
+          "A cube of cubes of five tetrahedra each, cut along a plane into two bodies that touch; the cut "
+          "leaves bad tetrahedra. Node sets: the faces x_min, ... z_max, and lower_cut and upper_cut, seen "
+          "along the normal.")
+          .optional("size", &CutCube::size, length(), "1", "Of the edges of the cube.")
+          .optional("cells", &CutCube::cells, integer(1, 1000), "8", "Small cubes along each edge.")
+          .optional("normal", &CutCube::normal, direction(), "[0, 0.2, 1]", "Of the plane.")
+          .optional("through", &CutCube::through, vector3("m"), "[0, 0, 0.1]", "A point of the plane.")
+          .optional("snap", &CutCube::snap, number("-", from_to(0, 0.5)), "0",
+                    "Nodes nearer to the plane than so many edges of the small cubes are moved onto it. 0 "
+                    "cuts as it comes, and may leave arbitrarily flat tetrahedra.");
+  return table;
+}
+
+const Table<SliverBall>& sliver_ball() {
+  static const auto table =
+      Table<SliverBall>(
+          "A ball with shaken nodes and slivers, tetrahedra of four nodes that nearly lie in a plane, as "
+          "meshing by Delaunay's criterion leaves them.")
+          .required("radius", &SliverBall::radius, length(), "0.5", "Of the ball.")
+          .required("edge_length", &SliverBall::edge_length, length(), "0.05",
+                    "Edge of the tetrahedra, about.")
+          .optional("slivers", &SliverBall::slivers, number("-", from_to(0, 0.05)), "0.02",
+                    "Share of all tetrahedra.")
+          .optional("jitter", &SliverBall::jitter, number("-", from_to(0, 0.3)), "0.05",
+                    "How far inner nodes are shaken along each axis, in edge_length.")
+          .optional("thinnest", &SliverBall::thinnest, number("-", from_to(1e-6, 0.1)), "0.001",
+                    "Least distance of the two edges of a sliver that cross, over the longer of them.")
+          .optional("seed", &SliverBall::seed, seed_number(), "7", "Of where nodes go and slivers are.")
+          .then([](SliverBall& ball, const Value& map, const std::string& path) {
+            expect_possible(8 * ball.radius * ball.radius * ball.radius, ball.edge_length, map, path);
+          });
+  return table;
+}
+
 }  // namespace
 
 const Table<MeshConfig>& mesh_table() {
@@ -112,6 +161,9 @@ const Table<MeshConfig>& mesh_table() {
         .alternative_by_key("file", std::identity{}, file_mesh())
         .alternative("box", std::identity{}, box_mesh());
     add_filled_shapes(keys);
+    keys.alternative("wedge_stack", std::identity{}, wedge_stack())
+        .alternative("cut_cube", std::identity{}, cut_cube())
+        .alternative("sliver_ball", std::identity{}, sliver_ball());
     return keys;
   }();
   return table;

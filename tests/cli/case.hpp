@@ -41,6 +41,8 @@ struct Case {
 [[nodiscard]] std::vector<Case> quasistatic_cases();
 [[nodiscard]] std::vector<Case> mass_cases();
 [[nodiscard]] std::vector<Case> shape_cases();
+/// Those of generated meshes with bad elements.
+[[nodiscard]] std::vector<Case> bad_mesh_cases();
 [[nodiscard]] std::vector<Case> motion_cases();
 [[nodiscard]] std::vector<Case> rigid_cases();
 [[nodiscard]] std::vector<Case> explicit_cases();

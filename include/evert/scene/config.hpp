@@ -7,6 +7,7 @@
 #include "evert/materials/damping.hpp"
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
+#include "evert/mesh/bad_meshes.hpp"
 #include "evert/mesh/generators.hpp"
 #include "evert/scene/shape_config.hpp"
 
@@ -50,7 +51,7 @@ struct FilledShape {
   double edge_length = 0;  ///< [m]
 };
 
-using MeshConfig = std::variant<FileMesh, BoxMesh, FilledShape>;
+using MeshConfig = std::variant<FileMesh, BoxMesh, FilledShape, WedgeStack, CutCube, SliverBall>;
 
 // --- bodies
 

@@ -1,5 +1,6 @@
 // Meshes with bad elements: their true limits and how near the bounds come.  PHYSICS 9, "Reference meshes"
 #include "evert/core/formatted.hpp"
+#include "evert/mesh/bad_meshes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include "tests/support/verify.hpp"
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace evert::test {
 namespace {
@@ -89,6 +91,40 @@ INSTANTIATE_TEST_SUITE_P(All, ReferenceLimits,
                                name, [](char c) { return c == '.' || c == '-'; }, '_');
                            return name;
                          });
+
+struct Generated {
+  const char* name;
+  Mesh mesh;
+  double density;     // [kg/m^3]
+  double true_limit;  // [s]; 0: not known
+};
+
+std::vector<Generated> generated_meshes() {
+  return {{"generated wedge_stack", generate_wedge_stack({}), 0.05, 0.1355e-3},
+          {"generated cut_cube", generate_cut_cube({}), 0.06, 0.4598e-3},
+          {"generated sliver_ball", generate_sliver_ball({.radius = 1, .edge_length = 0.2}), 1000, 0}};
+}
+
+TEST(ReferenceLimits, OfGeneratedMeshesAreThoseOfThePrototype) {
+  for (const auto& [name, whole, density, true_limit] : generated_meshes()) {
+    const auto mesh = distribute(PETSC_COMM_WORLD, whole);
+    const ElasticForces elastic(
+        mesh, std::vector{
+                  ElasticProperties{density, RotatedLinear{.lame = Lame::from_young_poisson(1e4, 0.3)}, {}}});
+    auto x = at_rest(mesh);
+    const auto bounds = all_bounds(mesh, elastic, x);
+    const double limit = step_limit(bounds.truth);
+    const double certified = step_limit(bounds.collatz_wielandt) / limit;
+    EXPECT_LE(certified, 1 + 1e-9) << name;
+    EXPECT_GE(certified, 0.95) << name;
+    EXPECT_GE(std::min(bounds.eq9, bounds.eq8_upper), bounds.truth * (1 - 1e-9)) << name;
+    verify(std::string(name) + ": Collatz-Wielandt step over the true one", "1", certified, "0.95 to 1");
+    if (true_limit == 0) continue;
+    EXPECT_NEAR(limit, true_limit, 5e-3 * true_limit) << name;
+    verify(std::string(name) + ": true limit of the step [ms]", formatted("%g", 1e3 * true_limit),
+           1e3 * limit, "0.5 %");
+  }
+}
 
 }  // namespace
 }  // namespace evert::test
