@@ -18,6 +18,7 @@ void euler_kick(System& system, DampingSolver& solver, NodeField& force, Vec rig
   const auto total = force.owned();
   set_vec(right, [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt * total[i]; });
   const auto held = system.prescribed.at(system.time + dt);
+  system.prepare_solve(dt);
   solver.solve(0, right, system.v, held);
   if (!system.prescribed.empty()) system.impulses.constraint += exerted(held, solver.reaction());
 }

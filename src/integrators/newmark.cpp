@@ -8,7 +8,7 @@
 namespace evert {
 
 Newmark::Newmark(const System& system)
-    : solver_(system.mesh, system.elastic), held_(system), predicted_(system.mesh) {
+    : solver_(system.mesh, system.elastic, system.implicit_strains), held_(system), predicted_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
 }
 
@@ -52,6 +52,7 @@ int Newmark::predict(System& system, double dt) {
   std::copy(v.begin(), v.end(), predicted_.owned().begin());
   predicted_.touched();
   follow_forces(system);
+  system.prepare_solve(dt);
   const int iterations = solver_.solve(dt / 2, right_.get(), predicted_,
                                        system.prescribed.at(system.time + dt / 2), system.v_change.vec());
   remember_change(system, predicted_.owned(), v);
@@ -81,10 +82,12 @@ int Newmark::correct(System& system, double dt, bool colliding) {
   take_momentum_and_half_impulse(system, dt);
   if (!colliding)
     solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
+  solver_.carry_over(right_.get(), system.v);
   system.update_forces(system.time + dt);
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   account_for_gravity(system, dt);
   follow_forces(system);
+  system.prepare_solve(dt);
   return solver_.solve(implicit_, right_.get(), system.v, held_.constraints(), system.v_change.vec());
 }
 

@@ -127,7 +127,14 @@ const Table<FilterConfig>& filter_table() {
           .optional("safety", &FilterConfig::safety, number("-", at_least(1)), "1.5",
                     "How much larger a step the filtered body takes at rest: strain makes it stiffer. Below "
                     "1.25 it "
-                    "may blow up.");
+                    "may blow up.")
+          .optional(
+              "constraints", &FilterConfig::constraints,
+              one_of<FilterConstraints>(
+                  {{"none", FilterConstraints::none, "filtered elements are softer than their material"},
+                   {"compliant", FilterConstraints::compliant,
+                    "they keep all of their forces; what the filter would take off is taken implicitly"}}),
+              "none", "What is done about the softness of filtered elements.");
   return table;
 }
 
