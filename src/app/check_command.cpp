@@ -141,7 +141,9 @@ std::string_view name_of(FilterSelection selection) {
 }
 
 std::string_view name_of(FilterConstraints constraints) {
-  return constraints == FilterConstraints::none ? "none" : "compliant";
+  return constraints == FilterConstraints::none    ? "none"
+         : constraints == FilterConstraints::paper ? "paper"
+                                                   : "compliant";
 }
 
 void report_filter(Report& report, const ModalFilter& filter) {

@@ -111,7 +111,7 @@ std::string time_step_text(const SceneConfig& scene, Simulation& simulation) {
 /// Collective. What elements of a compliant filter have beside their implicit stiffness is what they would be
 /// softened to, and has the limit of the steps.
 void look_at_the_explicit_part(MPI_Comm comm, SceneConfig& scene) {
-  if (!scene.filter || scene.filter->constraints != FilterConstraints::compliant) return;
+  if (!scene.filter || scene.filter->constraints == FilterConstraints::none) return;
   scene.filter->constraints = FilterConstraints::none;
   SpanningRows::read_options(comm);  // which are not wrong here
 }

@@ -106,6 +106,8 @@ void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& chang
   elastic_.separate(std::move(separate));
   if (options_.constraints == FilterConstraints::compliant)
     stiff_cells_ = evert::stiff_cells(problem, clamps_);
+  if (options_.constraints == FilterConstraints::paper)
+    shape_constraints_ = evert::shape_constraints(problem, clamps_);
   ++revision_;
 }
 

@@ -20,8 +20,10 @@ double Newmark::stable_step(const System& system) {
 
 StepReport Newmark::advance(System& system, double dt) {
   StepReport report{.dt = dt};
+  system.begin_projection();
   report.cg_iterations = predict(system, dt);
   const auto held = held_.collide(system, predicted_, dt);  // 3.
+  report.projection_iterations = system.project(held_.constraints(), dt);
   if (!held.colliding) account_for_mass_damping(system, system.v.owned(), dt / 2);
   report.cg_iterations += correct(system, dt, held.colliding);
   if (held.any()) report.cg_iterations += held_.rub(system, solver_);

@@ -54,12 +54,11 @@ SpanningRows::SpanningRows(const DistributedMesh& mesh, std::span<const Nodes> n
   check(MatSetType(pattern.get(), MATPREALLOCATOR));
   check(MatSetUp(pattern.get()));
   fill(pattern.get(), zeros);
-  for (MatHandle* mat : {&transposed_, &moved_}) {
-    check(MatCreate(mesh.comm, mat->out()));
-    check(MatSetSizes(mat->get(), components, count, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(mat->get(), MATAIJ));
-    check(MatPreallocatorPreallocate(pattern.get(), PETSC_TRUE, mat->get()));
-  }
+  check(MatCreate(mesh.comm, transposed_.out()));
+  check(MatSetSizes(transposed_.get(), components, count, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(transposed_.get(), MATAIJ));
+  check(MatPreallocatorPreallocate(pattern.get(), PETSC_TRUE, transposed_.get()));
+  check(MatDuplicate(transposed_.get(), MAT_DO_NOT_COPY_VALUES, moved_.out()));
   check(MatTransposeMatMult(transposed_.get(), moved_.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT,
                             product_.out()));
   check(MatSetOption(product_.get(), MAT_SYMMETRIC, PETSC_TRUE));

@@ -144,7 +144,7 @@ std::string complaint(const std::string& name, const LiveSolvers& live) {
   if (prefix == "quasistatic_" && !is_live(prefix, live))
     return "-" + name + ": has no effect, since integrator.method is not quasistatic";
   if (prefix == "projection_" && !is_live(prefix, live))
-    return "-" + name + ": has no effect, since the scene has no filter with constraints: compliant";
+    return "-" + name + ": has no effect, since the scene has no filter with constraints: compliant or paper";
   const auto match = nearest_match(name, well_known_options());
   return "-" + name + ": unknown option" + (match.empty() ? "" : " (did you mean '-" + match + "'?)") +
          "; -allow_unknown_options lets it pass";
@@ -166,7 +166,7 @@ LiveSolvers solvers_of(const Simulation& simulation) {
   return {.damping = solves,
           .explicit_damping = !solves && !simulation.quasistatic() && simulation.elastic().damped(),
           .quasistatic = simulation.quasistatic(),
-          .projection = simulation.implicit_strains() != nullptr};
+          .projection = simulation.implicit_strains() != nullptr || simulation.projection() != nullptr};
 }
 
 void apply_petsc_block(const SceneConfig& scene) {

@@ -147,6 +147,13 @@ std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t
   return "obstacles." + obstacle.name() + "." + what + "_" + "xyz"[axis];
 }
 
+/// Collective. Of a filter with `paper` constraints.
+std::unique_ptr<ShapeProjection> make_projection(const DistributedMesh& mesh, const ElasticForces& elastic,
+                                                 const ModalFilter* filter) {
+  if (filter == nullptr || filter->options().constraints != FilterConstraints::paper) return nullptr;
+  return std::make_unique<ShapeProjection>(mesh, elastic, *filter);
+}
+
 }  // namespace
 
 Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
@@ -154,6 +161,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       elastic_(mesh_, definition.properties, possible_mass(definition)),
       filter_(make_filter(definition, mesh_, elastic_)),
       implicit_strains_(make_implicit_strains(mesh_, elastic_, filter_.get())),
+      projection_(make_projection(mesh_, elastic_, filter_.get())),
       collisions_(possible_obstacles(definition), elastic_.masses()),
       rigid_(collisions_.obstacles()),
       prescribed_(std::move(definition.prescribed)),
@@ -165,6 +173,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
+  system_.projection = projection_.get();
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
   forces_stale_ = true;

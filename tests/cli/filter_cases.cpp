@@ -39,7 +39,16 @@ const std::vector<Case> cases{
     good("filter_paper", "run scene.yaml -set filter.selection=paper -damping_mat_type baij"),
     good("filter_by_another_solver", "run scene.yaml -projection_ksp_type cg -projection_pc_type jacobi"),
     bad("filter_projection_option_without_compliance", "-set filter.constraints=none -projection_ksp_type cg",
-        {"-projection_ksp_type: has no effect", "constraints: compliant"}),
+        {"-projection_ksp_type: has no effect", "constraints: compliant or paper"}),
+    good("filter_paper_constraints", "run scene.yaml -set filter.constraints=paper"),
+    bad("filter_projection_of_compliance", "-set filter.projection=shake",
+        {"filter.projection", "goes with 'constraints: paper' only"}),
+    bad("filter_lengths_that_held_nodes_contradict",
+        "-set filter.constraints=paper -set obstacles={} "
+        "-set 'bodies.cube.mesh={generate: box, size: [1, 1, 1], cells: [1, 2, 2], cell: tet6}' "
+        "-set 'constraints=[{body: cube, node_set: x_min, velocity: [[0, 0, 0, 0]]}, "
+        "{body: cube, node_set: x_max, velocity: [[0, 50, 0, 0]]}]'",
+        {"filter.constraints: 'paper' keeps lengths", "contradict"}),
     good("filter_without_constraints", "run scene.yaml -set filter.constraints=none"),
     good("filter_adaptive", "run scene.yaml -set filter.selection=adaptive -set filter.safety=1.5"),
     good("filter_with_softening_and_stiffening",

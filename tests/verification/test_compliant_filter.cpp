@@ -30,15 +30,19 @@ struct Case {
   double time_step;  ///< [s]
   FilterSelection selection;
   double largest_error;  ///< of the first eight frequencies with compliant constraints
+  bool shows_paper;      ///< the errors with the constraints of the paper, too
 };
-constexpr std::array cases{
-    Case{"wedge_stack", 0.05, 0.7e-3, paper, 0.04}, Case{"cut_cube", 0.06, 0.9e-3, spare_mass, 0.005},
-    Case{"ball404", 1000, 7.582e-3, spare_mass, 0.005}, Case{"ball20k", 1000, 5.117e-3, spare_mass, 0.005}};
+constexpr std::array cases{Case{"wedge_stack", 0.05, 0.7e-3, paper, 0.04, true},
+                           Case{"cut_cube", 0.06, 0.9e-3, spare_mass, 0.005, false},
+                           Case{"ball404", 1000, 7.582e-3, spare_mass, 0.005, true},
+                           Case{"ball20k", 1000, 5.117e-3, spare_mass, 0.005, false}};
 
 constexpr Lame reference_lame = Lame::from_young_poisson(1e4, 0.3);
 
 std::string name_of(FilterConstraints constraints) {
-  return constraints == FilterConstraints::none ? "none" : "compliant";
+  return constraints == FilterConstraints::none    ? "none"
+         : constraints == FilterConstraints::paper ? "paper"
+                                                   : "compliant";
 }
 
 ElasticProperties properties_of(const Case& of, const Material& material) {
@@ -73,6 +77,7 @@ class Body {
                                   [&](LocalIndex cell, std::span<const double> of_cell) {
                                     matrix.add(block->cell_nodes(cell), of_cell);
                                   });
+    if (filter_ != nullptr) add_rigid_lengths(matrix);
     matrix.end();
     return matrix;
   }
@@ -100,16 +105,35 @@ class Body {
     return matrix;
   }
 
+  /// factor j jᵀ of a row of up to four nodes.
+  static void add_row(NodeMatrix& matrix, const std::array<LocalIndex, 4>& nodes, const TetRow& j,
+                      double factor) {
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b) {
+        if (nodes[a] < 0 || nodes[b] < 0) continue;
+        std::array<double, 9> block{};
+        for (std::size_t k = 0; k < 9; ++k) block[k] = factor * j[a][k / 3] * j[b][k % 3];
+        matrix.add_block(nodes[a], nodes[b], block);
+      }
+  }
+
   void add_strains(NodeMatrix& matrix) const {
     const auto& rows = strains_->rows();
-    CellNodes nodes(4);
-    std::array<double, 144> product{};
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      std::ranges::copy(rows.nodes()[r], &nodes[0]);
-      const auto& j = rows.coefficients()[r];
-      for (std::size_t k = 0; k < 144; ++k)
-        product[k] = j[k / 36][k / 12 % 3] * j[k % 12 / 3][k % 3] / rows.compliances()[r];
-      matrix.add(nodes, product);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      add_row(matrix, rows.nodes()[r], rows.coefficients()[r], 1 / rows.compliances()[r]);
+  }
+
+  /// The lengths that `paper` keeps, as springs of frequencies far above all others.
+  void add_rigid_lengths(NodeMatrix& matrix) const {
+    constexpr double stiff = 1e4;
+    for (const auto& constraint : filter_->shape_constraints()) {
+      TetRow j;
+      static_cast<void>(violation(constraint, x_.local(), j));
+      double mobility = 0;
+      for (std::size_t a = 0; a < 4; ++a)
+        if (constraint.nodes[a] >= 0)
+          mobility += dot(j[a], j[a]) / elastic_.masses()[static_cast<std::size_t>(constraint.nodes[a])];
+      add_row(matrix, constraint.nodes, j, stiff * filter_->options().limit() / mobility);
     }
   }
 
@@ -128,7 +152,7 @@ std::vector<double> eigenvalues(Mat k, Mat a, PetscInt count, std::optional<doub
   check(EPSSetOperators(eps.get(), k, a));
   check(EPSSetProblemType(eps.get(), EPS_GHEP));
   check(EPSSetDimensions(eps.get(), count, PETSC_DEFAULT, PETSC_DEFAULT));
-  check(EPSSetTolerances(eps.get(), 1e-10, 1000));
+  check(EPSSetTolerances(eps.get(), 1e-8, 200));
   ST st = nullptr;
   KSP ksp = nullptr;
   PC pc = nullptr;
@@ -190,7 +214,10 @@ TEST_P(OnMesh, KeepsTheFirstEightFrequencies) {
   const double limit = ModalFilterOptions{.time_step = GetParam().time_step}.limit();
   const auto exact = first_frequencies(Body(mesh, GetParam(), {}), limit);
   ASSERT_EQ(exact.size(), 8U);
-  for (const auto constraints : {FilterConstraints::none, FilterConstraints::compliant}) {
+  for (const auto constraints :
+       {FilterConstraints::none, FilterConstraints::paper, FilterConstraints::compliant}) {
+    // As stiff springs, hundreds of lengths that depend on each other leave the slow modes to rounding.
+    if (constraints == FilterConstraints::paper && !GetParam().shows_paper) continue;
     const auto found = first_frequencies(Body(mesh, GetParam(), constraints), limit);
     ASSERT_EQ(found.size(), 8U);
     double error = 0;

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/filter/filter_constraints.hpp"
 #include "evert/filter/selection.hpp"
+#include "evert/filter/shape_constraints.hpp"
 #include "evert/filter/stiff_modes.hpp"
 
 #include <cstdint>
@@ -14,6 +15,7 @@ struct ModalFilterOptions {
       1.25;  ///< [-] ≥ 1: how much larger a step the filtered body takes at rest; strain stiffens it
   FilterSelection selection = FilterSelection::spare_mass;
   FilterConstraints constraints = FilterConstraints::none;  ///< compliant: the integrator must take part
+  FilterProjection projection = FilterProjection::shake;    ///< of `paper`
   double stability_constant = 2;  ///< c of the integrator: ωΔt ≤ c is stable without damping
 
   /// (c/Δt)² that no squared frequency of the filtered body exceeds at rest [1/s²]; implicit damping only
@@ -64,6 +66,8 @@ class ModalFilter {
   /// With `compliant`, what the step has to take implicitly, of this rank; else none. They change with
   /// revision().
   [[nodiscard]] const std::vector<StiffCell>& stiff_cells() const { return stiff_cells_; }
+  /// With `paper`, the lengths that are kept, of this rank; else none. They change with revision().
+  [[nodiscard]] const std::vector<ShapeConstraint>& shape_constraints() const { return shape_constraints_; }
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
   /// Cells of this rank whose vibrations the last change has made it look at.
   [[nodiscard]] LocalIndex looked_at() const { return looked_at_; }
@@ -78,6 +82,7 @@ class ModalFilter {
   ModalFilterOptions options_;
   CellClamps clamps_;
   std::vector<StiffCell> stiff_cells_;
+  std::vector<ShapeConstraint> shape_constraints_;
   std::uint64_t revision_ = 0;
   LocalIndex looked_at_ = 0;
 };

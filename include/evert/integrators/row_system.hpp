@@ -55,6 +55,11 @@ class RowSystem {
   /// to `normal`, yz xz xy to `shear`; their ghosts are scratch.
   void add_diagonal(NodeField& normal, NodeField& shear) const;
 
+  /// Whether rows of any rank have nodes that the rank does not own.
+  [[nodiscard]] bool has_ghosts() const { return has_ghosts_; }
+  /// J W of the last factor().
+  [[nodiscard]] std::span<const Coefficients> moved() const { return moved_; }
+
   /// Rows of all ranks that are solved by PETSc.
   [[nodiscard]] GlobalIndex spanning_rows() const { return spanning_count_; }
   /// Rows of this rank that are solved on it.

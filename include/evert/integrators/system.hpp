@@ -5,6 +5,7 @@
 #include "evert/forces/body_force.hpp"
 #include "evert/forces/elastic_forces.hpp"
 #include "evert/integrators/implicit_strains.hpp"
+#include "evert/integrators/shape_projection.hpp"
 
 #include <cstdint>
 #include <span>
@@ -23,6 +24,8 @@ struct System {
   BodyForce body_force;  ///< besides gravity; empty where there is none
   ImplicitStrains* implicit_strains =
       nullptr;  ///< of a compliant filter; null: all of the elasticity is explicit
+
+  ShapeProjection* projection = nullptr;  ///< of a filter with `paper` constraints; null: none
 
   NodeField x;         ///< positions [m]; ghosts are up to date between steps
   NodeField v;         ///< velocities [m/s]
@@ -57,6 +60,14 @@ struct System {
   /// implicit_strains up to date.
   void prepare_solve(double dt) const {
     if (implicit_strains != nullptr) implicit_strains->prepare(x, dt, force_updates);
+  }
+  /// Collective. At the beginning of a step, and once nodes have moved, with `held` what holds them from then
+  /// on: keeps the lengths of filtered elements. Returns the iterations that took.
+  void begin_projection() const {
+    if (projection != nullptr) projection->begin(x);
+  }
+  int project(std::span<const NodeConstraint> held, double dt) {
+    return projection != nullptr ? projection->project(x, v, held, dt) : 0;
   }
   /// Collective. Adds the weights and what the body force does at `t` [s] to `sum`, on owned nodes [N]: all
   /// that does not depend on x.

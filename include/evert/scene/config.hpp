@@ -275,6 +275,7 @@ struct FilterConfig {
   FilterSelection selection = FilterSelection::spare_mass;
   double safety = 1.25;  ///< [-] ≥ 1
   FilterConstraints constraints = FilterConstraints::compliant;
+  FilterProjection projection = FilterProjection::shake;  ///< of `paper`
 };
 
 struct CheckpointConfig {
