@@ -5,6 +5,7 @@
 #include "evert/integrators/implicit_strains.hpp"
 #include "evert/math/nodal.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 #include <slepceps.h>
 
@@ -33,7 +34,7 @@ struct Case {
   bool shows_paper;      ///< the errors with the constraints of the paper, too
 };
 constexpr std::array cases{Case{"wedge_stack", 0.05, 0.7e-3, paper, 0.04, true},
-                           Case{"cut_cube", 0.06, 0.9e-3, spare_mass, 0.005, false},
+                           Case{"cut_cube", 0.06, 0.9e-3, spare_mass, 0.005, true},
                            Case{"ball404", 1000, 7.582e-3, spare_mass, 0.005, true},
                            Case{"ball20k", 1000, 5.117e-3, spare_mass, 0.005, false}};
 
@@ -144,8 +145,34 @@ class Body {
   std::unique_ptr<ImplicitStrains> strains_;
 };
 
+/// All eigenvalues of K u = ω² A u of a small body, ascending.
+std::vector<double> all_eigenvalues(Mat k, Mat a) {
+  const auto dense = [](Mat sparse) {
+    MatHandle converted;
+    PetscInt size = 0;
+    const PetscScalar* entries = nullptr;
+    check(MatGetSize(sparse, &size, nullptr));
+    check(MatConvert(sparse, MATDENSE, MAT_INITIAL_MATRIX, converted.out()));
+    check(MatDenseGetArrayRead(converted.get(), &entries));
+    const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
+    check(MatDenseRestoreArrayRead(converted.get(), &entries));
+    return matrix;
+  };
+  const Eigen::VectorXd values =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(dense(k), dense(a), Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  return {values.begin(), values.end()};
+}
+
 /// `count` eigenvalues of K u = ω² A u from the `target` on, by shift and invert, or the largest.
 std::vector<double> eigenvalues(Mat k, Mat a, PetscInt count, std::optional<double> target) {
+  constexpr PetscInt small = 1000;  // components: Lanczos takes minutes for the cut cube
+  PetscInt size = 0;
+  check(MatGetSize(k, &size, nullptr));
+  if (size <= small) {
+    const auto all = all_eigenvalues(k, a);
+    return target ? std::vector(all.begin(), all.begin() + count) : std::vector(all.end() - count, all.end());
+  }
   EpsHandle eps;
   if (!SlepcInitializeCalled) check(SlepcInitializeNoArguments());
   check(EPSCreate(PETSC_COMM_WORLD, eps.out()));
@@ -216,7 +243,7 @@ TEST_P(OnMesh, KeepsTheFirstEightFrequencies) {
   ASSERT_EQ(exact.size(), 8U);
   for (const auto constraints :
        {FilterConstraints::none, FilterConstraints::paper, FilterConstraints::compliant}) {
-    // As stiff springs, hundreds of lengths that depend on each other leave the slow modes to rounding.
+    // Of small bodies only, all eigenvalues of which are computed: Lanczos loses its way among stiff springs.
     if (constraints == FilterConstraints::paper && !GetParam().shows_paper) continue;
     const auto found = first_frequencies(Body(mesh, GetParam(), constraints), limit);
     ASSERT_EQ(found.size(), 8U);
