@@ -393,7 +393,10 @@ TEST_P(OnMesh, KeepsMomentaAndEnergy) {
 TEST_P(OnMesh, DoesNotDependOnTheNumberOfRanks) {
   if (size_of(PETSC_COMM_WORLD) == 1) GTEST_SKIP() << "one rank";
   const auto shared = simulation(path_, GetParam(), amplitude_of(GetParam()), IntegrationMethod::newmark);
-  EXPECT_GT(shared->implicit_strains()->rows().spanning_rows(), 0) << "clusters must span ranks";
+  // The halves of the cut cube are not connected, and two ranks have one each.
+  if (std::string(GetParam().mesh) != "cut_cube" || size_of(PETSC_COMM_WORLD) > 2) {
+    EXPECT_GT(shared->implicit_strains()->rows().spanning_rows(), 0) << "clusters must span ranks";
+  }
   const auto whole =
       simulation(path_, GetParam(), amplitude_of(GetParam()), IntegrationMethod::newmark, PETSC_COMM_SELF);
   const int steps = std::string(GetParam().mesh) == "ball20k" ? 20 : 200;
