@@ -140,12 +140,19 @@ std::string_view name_of(FilterSelection selection) {
                                                     : "adaptive";
 }
 
+std::string_view name_of(FilterConstraints constraints) {
+  return constraints == FilterConstraints::none    ? "none"
+         : constraints == FilterConstraints::paper ? "paper"
+                                                   : "compliant";
+}
+
 void report_filter(Report& report, const ModalFilter& filter) {
   const auto& options = filter.options();
   report.line("filter",
               formatted("%d of %zu tet4 are filtered for steps of %g s with a safety of %g, selection ",
                         filter.filtered_cells(), filter.clamps().size(), options.time_step, options.safety) +
-                  std::string(name_of(options.selection)));
+                  std::string(name_of(options.selection)) + ", constraints " +
+                  std::string(name_of(options.constraints)));
 }
 
 void report_surroundings(Report& report, const SceneConfig& scene, const Simulation& simulation) {
@@ -299,7 +306,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
   Report report(out);
   report.line("scene", scene.name + " (" + scene.file + ")");
   report_bodies(report, scene, built);
-  if (const auto& filter = built.simulation->filter()) report_filter(report, *filter);
+  if (const auto* filter = built.simulation->filter()) report_filter(report, *filter);
   report_surroundings(report, scene, *built.simulation);
   report_cost(report, scene, *built.simulation);
   reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, solvers_of(*built.simulation));

@@ -225,6 +225,7 @@ int run_command(MPI_Comm comm, const RunArguments& arguments) {
   if (arguments.help) {
     DampingSolver::print_options(comm);
     EquilibriumSolver::print_options(comm);
+    SpanningRows::read_options(comm);
     return done;
   }
   catch_signals();

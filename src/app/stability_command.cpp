@@ -108,6 +108,14 @@ std::string time_step_text(const SceneConfig& scene, Simulation& simulation) {
   return formatted("time step: %.5g ms is what auto takes at this state", 1e3 * step);
 }
 
+/// Collective. What elements of a compliant filter have beside their implicit stiffness is what they would be
+/// softened to, and has the limit of the steps.
+void look_at_the_explicit_part(MPI_Comm comm, SceneConfig& scene) {
+  if (!scene.filter || scene.filter->constraints == FilterConstraints::none) return;
+  scene.filter->constraints = FilterConstraints::none;
+  SpanningRows::read_options(comm);  // which are not wrong here
+}
+
 }  // namespace
 
 StabilityArguments parse_stability_arguments(std::span<const std::string> arguments) {
@@ -136,12 +144,13 @@ int stability_command(MPI_Comm comm, const StabilityArguments& arguments, std::o
     return 0;
   }
   if (!arguments.table.empty()) on_root(comm, [&] { require_writable(arguments.table); });
-  const auto scene = load_scene(comm, run.scene, run.overrides);
+  auto scene = load_scene(comm, run.scene, run.overrides);
   if (scene.integrator.mass == MassForm::consistent)
     throw UserError(
         "integrator.mass: must be lumped for evert stability: it knows no limit of consistent masses");
   apply_petsc_block(scene);
   require_option_values(scene, run.petsc);
+  look_at_the_explicit_part(comm, scene);
   const auto built = build_scene(comm, scene);
   auto& simulation = *built.simulation;
   if (!run.restart.empty()) {

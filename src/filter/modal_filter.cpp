@@ -2,6 +2,7 @@
 
 #include "evert/core/error.hpp"
 #include "evert/core/formatted.hpp"
+#include "evert/filter/compliant_block.hpp"
 
 #include "nodal_sums.hpp"
 #include <algorithm>
@@ -104,6 +105,11 @@ void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& chang
     first += count;
   }
   elastic_.separate(std::move(separate));
+  if (options_.constraints == FilterConstraints::compliant)
+    stiff_cells_ = evert::stiff_cells(problem, clamps_);
+  if (options_.constraints == FilterConstraints::paper)
+    shape_constraints_ = evert::shape_constraints(problem, clamps_);
+  ++revision_;
 }
 
 /// The cells of an entry that have a clamp, and a block of them.
@@ -124,8 +130,14 @@ SeparateCells ModalFilter::filtered_part(std::size_t entry, std::span<const Cell
   }
   if (part.cells.empty()) return part;
   const auto& properties = elastic_.properties(all.region);
-  part.block = make_filtered_block({all.type, nodes, interior, properties.density, {}}, mesh_.rest_positions,
-                                   properties.material, properties.damping, of_part);
+  const ElasticCells cells{all.type, nodes, interior, properties.density, {}};
+  const auto& rest = mesh_.rest_positions;
+  if (options_.constraints == FilterConstraints::compliant)
+    part.block = make_compliant_block(
+        make_elastic_block(cells, rest, properties.material, properties.damping, properties.precision), cells,
+        rest, of_part);
+  else
+    part.block = make_filtered_block(cells, rest, properties.material, properties.damping, of_part);
   return part;
 }
 

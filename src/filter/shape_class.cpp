@@ -53,10 +53,16 @@ bool short_edges_are_a_face(const Tetrahedron& tet) {
   return count == 3 && corners.count() == 3;
 }
 
+/// s_i: how corner i takes part in the shortest extent.
+std::array<double, 4> heights_of(const Tetrahedron& tet) {
+  std::array<double, 4> heights{};
+  for (std::size_t a = 0; a < 4; ++a) heights[a] = dot(tet.shortest_axis, tet.gradients[a]);
+  return heights;
+}
+
 /// One with a single short direction.
 ShapeClass flat_class(const Tetrahedron& tet) {
-  std::array<double, 4> heights{};  // s_i: how corner i takes part in the shortest extent
-  for (std::size_t a = 0; a < 4; ++a) heights[a] = dot(tet.shortest_axis, tet.gradients[a]);
+  const auto heights = heights_of(tet);
   std::array<std::size_t, 4> order{0, 1, 2, 3};
   std::ranges::sort(order, std::greater(), [&](std::size_t a) { return std::abs(heights[a]); });
   const auto shortest = static_cast<std::size_t>(std::ranges::min_element(tet.edges) - tet.edges.begin());
@@ -87,6 +93,31 @@ std::string_view name_of(ShapeClass shape) {
       break;
   }
   return "sliver";
+}
+
+ShortDistances short_distances(std::span<const Vec3d, 4> corners) {
+  const Tetrahedron tet(corners);
+  ShortDistances distances;
+  switch (shape_class(corners)) {
+    case ShapeClass::needle:
+      for (std::size_t e = 0; e < 6; ++e)
+        if (tet.is_short(e)) distances.edges.push_back(e);
+      break;
+    case ShapeClass::wedge:
+      distances.edges.push_back(
+          static_cast<std::size_t>(std::ranges::min_element(tet.edges) - tet.edges.begin()));
+      break;
+    case ShapeClass::cap: {  // the corner that is alone on its side
+      const auto heights = heights_of(tet);
+      const bool alone = std::ranges::count_if(heights, [](double s) { return s > 0; }) == 1;
+      distances.apex = static_cast<std::size_t>(
+          std::ranges::find_if(heights, [&](double s) { return (s > 0) == alone; }) - heights.begin());
+      break;
+    }
+    default:
+      distances.edges = {0, 1, 2, 3, 4, 5};
+  }
+  return distances;
 }
 
 ShapeClass shape_class(std::span<const Vec3d, 4> corners) {

@@ -1,5 +1,7 @@
 #include "evert/integrators/damping_matrix.hpp"
 
+#include <algorithm>
+
 namespace evert {
 namespace {
 
@@ -9,7 +11,8 @@ constexpr std::array<double, 9> unit_block{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
 AssembledDamping::AssembledDamping(const DampingOperator& damping, const char* type)
     : damping_(damping), matrix_(damping.mesh(), damping.elastic(), type, [&](const ElasticBlock& block) {
-        return block.damped() || damping.elastic().consistent_mass() != nullptr;
+        return block.damped() || damping.elastic().consistent_mass() != nullptr ||
+               damping.strains() != nullptr;
       }) {
   matrix_.declare_positive_definite(true);
   for (int column = 0; column < 3; ++column) projectors_.emplace_back(damping.mesh());
@@ -69,11 +72,27 @@ void AssembledDamping::assemble() {
       matrix_.add(nodes, cell_);
     }
   }
+  if (damping_.strains() != nullptr) add_strains();
   if (damping_.elastic().consistent_mass() != nullptr)
     add_consistent_masses();
   else
     add_lumped_masses();
   matrix_.end();
+}
+
+/// θΔt² w j jᵀ of every row.
+void AssembledDamping::add_strains() {
+  const auto& rows = damping_.strains()->rows();
+  CellNodes nodes(4);
+  cell_.resize(144);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::ranges::copy(rows.nodes()[r], &nodes[0]);
+    const auto& j = rows.coefficients()[r];
+    for (std::size_t k = 0; k < 144; ++k)
+      cell_[k] = j[k / 36][k / 12 % 3] * j[k % 12 / 3][k % 3] / rows.compliances()[r];
+    project_cell(nodes);
+    matrix_.add(nodes, cell_);
+  }
 }
 
 void AssembledDamping::add_lumped_masses() {

@@ -70,9 +70,11 @@ void project_block(const Mat3d& p, double* b) {
 
 }  // namespace
 
-DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic)
+DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic,
+                                 ImplicitStrains* strains)
     : mesh_(mesh),
       elastic_(elastic),
+      strains_(strains),
       masses_(elastic.consistent_mass() != nullptr ? elastic.consistent_mass()->diagonal()
                                                    : elastic.masses()),
       in_(mesh),
@@ -80,6 +82,7 @@ DampingOperator::DampingOperator(const DistributedMesh& mesh, const ElasticForce
       normal_(mesh),
       shear_(mesh),
       inverse_diagonal_(9 * static_cast<std::size_t>(mesh.owned_nodes)) {
+  if (strains_ != nullptr) of_strains_.emplace(OfStrains{NodeField(mesh), NodeField(mesh), 0});
   const PetscInt rows = 3 * mesh.owned_nodes;
   check(MatCreateShell(mesh.comm, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE, this, mat_.out()));
   check(MatSetBlockSize(mat_.get(), 3));
@@ -121,6 +124,7 @@ void DampingOperator::multiply(Vec x, Vec y) const {
     elastic_.add_damping(in_, out_, factor_);
   else
     elastic_.add_momentum_and_damping(in_, out_, factor_);
+  if (strains_ != nullptr) strains_->add_product(in_, out_);
   for (const auto& c : constraints_) {
     const auto inertia = masses_[static_cast<std::size_t>(c.node)] * node_value(values, c.node);
     set_node_value(out, c.node, inertia + c.free * (node_value(out, c.node) - inertia));
@@ -160,17 +164,32 @@ void DampingOperator::add_momentum_and_damping(Vec v, Vec out, double factor) co
   add_product(v, out, [&] { elastic_.add_momentum_and_damping(in_, out_, factor); });
 }
 
+void DampingOperator::update_diagonals() const {
+  if (!diagonal_valid_ && elastic_.damped()) elastic_.damping_diagonal(normal_, shear_);
+  diagonal_valid_ = true;
+  if (strains_ == nullptr || of_strains_->changes == strains_->changes()) return;
+  auto& [normal, shear, changes] = *of_strains_;
+  std::ranges::fill(normal.local(), 0.0);
+  std::ranges::fill(shear.local(), 0.0);
+  strains_->add_diagonal(normal, shear);
+  changes = strains_->changes();
+}
+
 /// work(node, block) for the 3×3 diagonal block of A at each owned node, by columns.
 template <class Work>
 void DampingOperator::for_each_diagonal_block(Work&& work) const {
-  if (!diagonal_valid_ && elastic_.damped()) elastic_.damping_diagonal(normal_, shear_);
-  diagonal_valid_ = true;
+  update_diagonals();
   auto constraint = constraints_.begin();
   for (std::size_t node = 0; node < masses_.size(); ++node) {
-    const auto [xx, yy, zz] =
-        (factor_ * node_value(normal_.owned(), static_cast<std::ptrdiff_t>(node))).components;
-    const auto [yz, xz, xy] =
-        (factor_ * node_value(shear_.owned(), static_cast<std::ptrdiff_t>(node))).components;
+    const auto at = static_cast<std::ptrdiff_t>(node);
+    Vec3d normal = factor_ * node_value(normal_.owned(), at),
+          shear = factor_ * node_value(shear_.owned(), at);
+    if (of_strains_) {
+      normal += node_value(of_strains_->normal.owned(), at);
+      shear += node_value(of_strains_->shear.owned(), at);
+    }
+    const auto [xx, yy, zz] = normal.components;
+    const auto [yz, xz, xy] = shear.components;
     std::array<double, 9> block{xx, xy, xz, xy, yy, yz, xz, yz, zz};
     if (constraint != constraints_.end() && static_cast<std::size_t>(constraint->node) == node)
       project_block((constraint++)->free, block.data());

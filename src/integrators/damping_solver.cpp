@@ -32,15 +32,18 @@ double first_norm(KSP ksp) {
 
 }  // namespace
 
-DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic)
-    : DampingSolver(mesh, elastic, Damping::implicit) {}
+DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic,
+                             ImplicitStrains* strains)
+    : DampingSolver(mesh, elastic, strains, Damping::implicit) {}
 
-DampingSolver DampingSolver::without_damping(const DistributedMesh& mesh, const ElasticForces& elastic) {
-  return {mesh, elastic, Damping::left_out};
+DampingSolver DampingSolver::without_damping(const DistributedMesh& mesh, const ElasticForces& elastic,
+                                             ImplicitStrains* strains) {
+  return {mesh, elastic, strains, Damping::left_out};
 }
 
-DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, Damping damping)
-    : mesh_(mesh), elastic_(elastic) {
+DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic,
+                             ImplicitStrains* strains, Damping damping)
+    : mesh_(mesh), elastic_(elastic), strains_(strains) {
   check(VecCreateMPI(mesh.comm, 3 * mesh.owned_nodes, PETSC_DETERMINE, reaction_.out()));
   check(VecSetBlockSize(reaction_.get(), 3));
   check(VecDuplicate(reaction_.get(), projected_.out()));
@@ -49,7 +52,7 @@ DampingSolver::DampingSolver(const DistributedMesh& mesh, const ElasticForces& e
 }
 
 void DampingSolver::create_ksp() {
-  operator_ = std::make_unique<DampingOperator>(mesh_, elastic_);
+  operator_ = std::make_unique<DampingOperator>(mesh_, elastic_, strains_);
   const auto type = damping_matrix_type(mesh_.comm);
   ksp_ = damping_ksp(mesh_.comm, type);
   if (type != "shell") assembled_ = std::make_unique<AssembledDamping>(*operator_, type.c_str());
@@ -85,7 +88,7 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
   impose(constraints, v.owned());
   v.touched();
   set_to_negative(reaction_.get(), b);
-  react(v.vec());
+  react_to_velocity(v.vec());
   reference_ = 0;
   return correct(v, constraints, along);
 }
@@ -93,31 +96,44 @@ int DampingSolver::solve(double s, Vec b, NodeField& v, std::span<const NodeCons
 int DampingSolver::refine(NodeField& v, std::span<const NodeConstraint> constraints) {
   const PhaseScope scope(Phase::damping_solve);
   static_cast<void>(reaction());
-  if (impose_now(v, constraints)) react(correction_.get());
+  if (impose_now(v, constraints)) react_to_change(correction_.get());
   return correct(v, constraints, nullptr);
 }
 
 std::span<double> DampingSolver::reaction() {
-  if (!reacted_) react(correction_.get());
+  if (!reacted_) react_to_change(correction_.get());
   reacted_ = true;
   const VecView view(reaction_.get());
   return view.values();
 }
 
-/// reaction_ += (M + s C) change
-void DampingSolver::react(Vec change) {
+void DampingSolver::carry_over(Vec b, NodeField& v) {
+  if (strains_ == nullptr) return;
+  strains_->add_product(correction_.get(), b, -1);
+  check(VecAXPY(v.vec(), 1.0, correction_.get()));
+  v.touched();
+}
+
+/// reaction_ += (M + s C + θΔt² K_s) change
+void DampingSolver::react_to_change(Vec change) {
+  react_to_velocity(change);
+  if (strains_ != nullptr) strains_->add_product(change, reaction_.get(), 1);
+}
+
+/// reaction_ += (M + s C) velocity
+void DampingSolver::react_to_velocity(Vec velocity) {
   if (elastic_.consistent_mass() != nullptr) {
-    operator_->add_momentum_and_damping(change, reaction_.get(), factor_);
+    operator_->add_momentum_and_damping(velocity, reaction_.get(), factor_);
     return;
   }
   {
     const VecView sum(reaction_.get());
-    const VecView velocity(change);
+    const VecView of_nodes(velocity);
     const auto mass = elastic_.masses();
     for (std::size_t i = 0; i < sum.values().size(); ++i)
-      sum.values()[i] += mass[i / 3] * velocity.values()[i];
+      sum.values()[i] += mass[i / 3] * of_nodes.values()[i];
   }
-  add_damping(change, reaction_.get(), factor_);
+  add_damping(velocity, reaction_.get(), factor_);
 }
 
 /// Imposes the constraints; correction_ = the change of `v`. Collective: whether any rank's changed by more
@@ -153,6 +169,8 @@ int DampingSolver::correct(NodeField& v, std::span<const NodeConstraint> constra
     const double multiple = along != nullptr ? go_along(along) : 0.0;
     iterations = iterate();
     if (multiple != 0) check(VecAXPY(correction_.get(), multiple, direction_.get()));
+  } else if (strains_ != nullptr) {
+    strains_->solve(projected_.get(), correction_.get(), constraints);
   } else {
     const VecView right(projected_.get());
     const VecView change(correction_.get());

@@ -12,12 +12,14 @@ namespace evert {
 void euler_kick(System& system, DampingSolver& solver, NodeField& force, Vec right, double dt) {
   const auto mass = system.masses();
   const auto v = system.v.owned();
+  system.begin_projection();
   damped_force(system, system.v, force);
   account_for_mass_damping(system, v, dt);
   account_for_gravity(system, dt);
   const auto total = force.owned();
   set_vec(right, [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt * total[i]; });
   const auto held = system.prescribed.at(system.time + dt);
+  system.prepare_solve(dt);
   solver.solve(0, right, system.v, held);
   if (!system.prescribed.empty()) system.impulses.constraint += exerted(held, solver.reaction());
 }
@@ -37,10 +39,14 @@ StepReport euler_drift(System& system, const NodeField& velocity, double dt) {
   }
   system.x.touched();
   system.v.touched();
+  const int projected = system.project(system.prescribed.at(system.time + dt), dt);
   account_for_obstacles(system, dt);
   system.time += dt;
   system.update_forces(system.time);
-  return {.dt = dt, .contacts = system.collisions.contacts(), .notes = system.collisions.take_notes()};
+  return {.dt = dt,
+          .contacts = system.collisions.contacts(),
+          .projection_iterations = projected,
+          .notes = system.collisions.take_notes()};
 }
 
 }  // namespace evert

@@ -6,7 +6,7 @@
 namespace evert {
 
 ExplicitEuler::ExplicitEuler(const System& system)
-    : solver_(DampingSolver::without_damping(system.mesh, system.elastic)),
+    : solver_(DampingSolver::without_damping(system.mesh, system.elastic, system.implicit_strains)),
       before_(system.mesh),
       force_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));

@@ -2,6 +2,22 @@
 
 namespace evert {
 
+double stability_constant_of(IntegrationMethod method) {
+  switch (method) {
+    case IntegrationMethod::quasistatic:
+      return Quasistatic::stability_constant;
+    case IntegrationMethod::verlet:
+      return Verlet::stability_constant;
+    case IntegrationMethod::symplectic_euler:
+      return SymplecticEuler::stability_constant;
+    case IntegrationMethod::explicit_euler:
+      return ExplicitEuler::stability_constant;
+    case IntegrationMethod::newmark:
+      break;
+  }
+  return Newmark::stability_constant;
+}
+
 Integrator make_integrator(IntegrationMethod method, const System& system,
                            const QuasistaticOptions& quasistatic) {
   switch (method) {

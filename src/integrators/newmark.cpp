@@ -8,7 +8,7 @@
 namespace evert {
 
 Newmark::Newmark(const System& system)
-    : solver_(system.mesh, system.elastic), held_(system), predicted_(system.mesh) {
+    : solver_(system.mesh, system.elastic, system.implicit_strains), held_(system), predicted_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
 }
 
@@ -20,8 +20,10 @@ double Newmark::stable_step(const System& system) {
 
 StepReport Newmark::advance(System& system, double dt) {
   StepReport report{.dt = dt};
+  system.begin_projection();
   report.cg_iterations = predict(system, dt);
   const auto held = held_.collide(system, predicted_, dt);  // 3.
+  report.projection_iterations = system.project(held_.constraints(), dt);
   if (!held.colliding) account_for_mass_damping(system, system.v.owned(), dt / 2);
   report.cg_iterations += correct(system, dt, held.colliding);
   if (held.any()) report.cg_iterations += held_.rub(system, solver_);
@@ -52,6 +54,7 @@ int Newmark::predict(System& system, double dt) {
   std::copy(v.begin(), v.end(), predicted_.owned().begin());
   predicted_.touched();
   follow_forces(system);
+  system.prepare_solve(dt);
   const int iterations =
       solver_.solve(dt / 2, right_.get(), predicted_, held_.hold_on_the_way(system, dt, right_.get()),
                     system.v_change.vec());
@@ -82,10 +85,12 @@ int Newmark::correct(System& system, double dt, bool colliding) {
   take_momentum_and_half_impulse(system, dt);
   if (!colliding)
     solver_.add_damping(system.v.vec(), right_.get(), -dt / 2);  // with C(xⁿ), before it changes
+  solver_.carry_over(right_.get(), system.v);
   system.update_forces(system.time + dt);
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * f[i]; });
   account_for_gravity(system, dt);
   follow_forces(system);
+  system.prepare_solve(dt);
   return solver_.solve(implicit_, right_.get(), system.v, held_.constraints(), system.v_change.vec());
 }
 

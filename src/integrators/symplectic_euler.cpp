@@ -8,7 +8,8 @@
 namespace evert {
 
 SymplecticEuler::SymplecticEuler(const System& system)
-    : solver_(DampingSolver::without_damping(system.mesh, system.elastic)), scratch_(system.mesh) {
+    : solver_(DampingSolver::without_damping(system.mesh, system.elastic, system.implicit_strains)),
+      scratch_(system.mesh) {
   check(VecCreateMPI(system.mesh.comm, 3 * system.mesh.owned_nodes, PETSC_DETERMINE, right_.out()));
 }
 

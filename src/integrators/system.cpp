@@ -4,7 +4,7 @@ namespace evert {
 
 System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
                RigidDynamics& rigid_dynamics, PrescribedMotion& prescribed_motion, const Vec3d& gravitation,
-               BodyForce force)
+               BodyForce force, ImplicitStrains* strains)
     : mesh(distributed),
       elastic(elastic_forces),
       collisions(node_collisions),
@@ -12,6 +12,7 @@ System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces
       prescribed(prescribed_motion),
       gravity(gravitation),
       body_force(std::move(force)),
+      implicit_strains(strains),
       x(distributed),
       v(distributed),
       v_change(distributed),

@@ -9,7 +9,7 @@
 namespace evert {
 
 Verlet::Verlet(const System& system)
-    : solver_(DampingSolver::without_damping(system.mesh, system.elastic)),
+    : solver_(DampingSolver::without_damping(system.mesh, system.elastic, system.implicit_strains)),
       held_(system),
       middle_(system.mesh),
       force_(system.mesh) {
@@ -20,8 +20,10 @@ double Verlet::stable_step(const System& system) { return explicitly_damped_step
 
 StepReport Verlet::advance(System& system, double dt) {
   StepReport report{.dt = dt};
+  system.begin_projection();
   kick_and_drift(system, dt);
   const auto held = held_.collide(system, middle_, dt);
+  report.projection_iterations = system.project(held_.constraints(), dt);
   kick(system, dt);
   if (held.any()) held_.rub(system, solver_);
   held_.finish(system, report);
@@ -39,6 +41,7 @@ void Verlet::kick_and_drift(System& system, double dt) {
   const auto force = force_.owned();
   set_vec(right_.get(), [&](std::size_t i, double) { return mass[i / 3] * v[i] + dt / 2 * force[i]; });
   std::copy(v.begin(), v.end(), middle_.owned().begin());
+  system.prepare_solve(dt);
   solver_.solve(0, right_.get(), middle_, system.prescribed.at(system.time + dt / 2));
   const PhaseScope scope(Phase::vector_update, 2.0 * static_cast<double>(v.size()));
   auto x = system.x.owned();
@@ -59,9 +62,11 @@ void Verlet::kick(System& system, double dt) {
   impose(held_.constraints(), expected);
   middle_.touched();
   account_for_mass_damping(system, expected, dt / 2);
+  solver_.carry_over(right_.get(), system.v);
   system.update_forces(system.time + dt);
   damped_force(system, middle_, force_);
   set_vec(right_.get(), [&](std::size_t i, double sum) { return sum + dt / 2 * force[i]; });
+  system.prepare_solve(dt);
   solver_.solve(0, right_.get(), system.v, held_.constraints());
 }
 

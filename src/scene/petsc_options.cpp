@@ -14,7 +14,8 @@
 namespace evert {
 namespace {
 
-constexpr std::array<std::string_view, 3> solver_prefixes{"damping_", "quasistatic_", "stability_"};
+constexpr std::array<std::string_view, 4> solver_prefixes{"damping_", "projection_", "quasistatic_",
+                                                          "stability_"};
 
 /// Of the solves we make, without their prefix: options that mean nothing without a value.
 const std::vector<std::string> valued_options{"mat_type",
@@ -105,7 +106,9 @@ void require_value(const std::string& name, bool has_value, const std::string& s
 
 /// Of a solver that the simulation has.
 bool is_live(std::string_view prefix, const LiveSolvers& live) {
-  return prefix == "quasistatic_" ? live.quasistatic : prefix == "damping_" && live.damping;
+  return prefix == "quasistatic_"  ? live.quasistatic
+         : prefix == "projection_" ? live.projection
+                                   : prefix == "damping_" && live.damping;
 }
 
 bool is_read_later(std::string_view name, const LiveSolvers& live) {
@@ -140,6 +143,8 @@ std::string complaint(const std::string& name, const LiveSolvers& live) {
            "lumped (integrator.mass)";
   if (prefix == "quasistatic_" && !is_live(prefix, live))
     return "-" + name + ": has no effect, since integrator.method is not quasistatic";
+  if (prefix == "projection_" && !is_live(prefix, live))
+    return "-" + name + ": has no effect, since the scene has no filter with constraints: compliant or paper";
   const auto match = nearest_match(name, well_known_options());
   return "-" + name + ": unknown option" + (match.empty() ? "" : " (did you mean '-" + match + "'?)") +
          "; -allow_unknown_options lets it pass";
@@ -160,7 +165,8 @@ LiveSolvers solvers_of(const Simulation& simulation) {
   const bool solves = simulation.solves_for_velocities();
   return {.damping = solves,
           .explicit_damping = !solves && !simulation.quasistatic() && simulation.elastic().damped(),
-          .quasistatic = simulation.quasistatic()};
+          .quasistatic = simulation.quasistatic(),
+          .projection = simulation.implicit_strains() != nullptr || simulation.projection() != nullptr};
 }
 
 void apply_petsc_block(const SceneConfig& scene) {

@@ -127,7 +127,27 @@ const Table<FilterConfig>& filter_table() {
           .optional("safety", &FilterConfig::safety, number("-", at_least(1)), "1.5",
                     "How much larger a step the filtered body takes at rest: strain makes it stiffer. Below "
                     "1.25 it "
-                    "may blow up.");
+                    "may blow up.")
+          .optional(
+              "constraints", &FilterConfig::constraints,
+              one_of<FilterConstraints>(
+                  {{"none", FilterConstraints::none, "filtered elements are softer than their material"},
+                   {"paper", FilterConstraints::paper,
+                    "softer, but short edges and heights keep their lengths; connected regions lock"},
+                   {"compliant", FilterConstraints::compliant,
+                    "they keep all of their forces; what the filter would take off is taken implicitly"}}),
+              "none", "What is done about the softness of filtered elements.")
+          .optional("projection", &FilterConfig::projection,
+                    one_of<FilterProjection>(
+                        {{"shake", FilterProjection::shake,
+                          "along the gradients at the beginning of the step: angular momentum is kept"},
+                         {"goldenthal", FilterProjection::goldenthal, "along those of every iterate"}}),
+                    "goldenthal", "How 'constraints: paper' keeps its lengths.")
+          .then([](FilterConfig& config, const Value& map, const std::string& path) {
+            const auto* value = map.find("projection");
+            if (value != nullptr && config.constraints != FilterConstraints::paper)
+              fail(*value, join(path, "projection"), "goes with 'constraints: paper' only");
+          });
   return table;
 }
 

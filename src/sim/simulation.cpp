@@ -87,16 +87,25 @@ std::vector<std::unique_ptr<Obstacle>> possible_obstacles(SimulationDefinition& 
   return std::move(definition.obstacles);
 }
 
-/// `options` with the stability constant of the integrator.
-ModalFilterOptions filter_for(ModalFilterOptions options, const Integrator& integrator) {
-  options.stability_constant =
-      std::visit([](const auto& chosen) { return std::remove_cvref_t<decltype(chosen)>::stability_constant; },
-                 integrator);
+/// Collective. None where the definition has none.
+std::unique_ptr<ModalFilter> make_filter(const SimulationDefinition& definition, const DistributedMesh& mesh,
+                                         ElasticForces& elastic) {
+  if (!definition.filter) return nullptr;
+  auto options = *definition.filter;
+  options.stability_constant = stability_constant_of(definition.method);
   if (!(options.stability_constant > 0))
     throw UserError("filter: no filter makes explicit_euler stable; it goes with newmark");
   if (std::isinf(options.stability_constant))
     throw UserError("filter: has no effect on states of rest, which no step is too large for");
-  return options;
+  return std::make_unique<ModalFilter>(mesh, elastic, options);
+}
+
+/// Collective. Of a compliant filter.
+std::unique_ptr<ImplicitStrains> make_implicit_strains(const DistributedMesh& mesh,
+                                                       const ElasticForces& elastic,
+                                                       const ModalFilter* filter) {
+  if (filter == nullptr || filter->options().constraints != FilterConstraints::compliant) return nullptr;
+  return std::make_unique<ImplicitStrains>(mesh, elastic, *filter);
 }
 
 /// What moves, this rank's share.
@@ -138,23 +147,33 @@ std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t
   return "obstacles." + obstacle.name() + "." + what + "_" + "xyz"[axis];
 }
 
+/// Collective. Of a filter with `paper` constraints.
+std::unique_ptr<ShapeProjection> make_projection(const DistributedMesh& mesh, const ElasticForces& elastic,
+                                                 const ModalFilter* filter) {
+  if (filter == nullptr || filter->options().constraints != FilterConstraints::paper) return nullptr;
+  return std::make_unique<ShapeProjection>(mesh, elastic, *filter);
+}
+
 }  // namespace
 
 Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
     : mesh_(std::move(mesh)),
       elastic_(mesh_, definition.properties, possible_mass(definition)),
+      filter_(make_filter(definition, mesh_, elastic_)),
+      implicit_strains_(make_implicit_strains(mesh_, elastic_, filter_.get())),
+      projection_(make_projection(mesh_, elastic_, filter_.get())),
       collisions_(possible_obstacles(definition), elastic_.masses()),
       rigid_(collisions_.obstacles()),
       prescribed_(std::move(definition.prescribed)),
       system_(mesh_, elastic_, collisions_, rigid_, prescribed_, definition.gravity,
-              std::move(definition.body_force)),
+              std::move(definition.body_force), implicit_strains_.get()),
       integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
-  if (definition.filter) filter_.emplace(mesh_, elastic_, filter_for(*definition.filter, integrator_));
+  system_.projection = projection_.get();
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
   forces_stale_ = true;

@@ -21,7 +21,10 @@ Case bad(const std::string& name, const std::string& setting, const std::vector<
 
 const std::vector<Case> cases{
     good("filter_check", "check scene.yaml",
-         {"48 of 48 tet4 are filtered for steps of 0.04 s with a safety of 1.25, selection spare_mass"}),
+         {"48 of 48 tet4 are filtered for steps of 0.04 s with a safety of 1.25, selection spare_mass, "
+          "constraints compliant"}),
+    good("filter_check_without_constraints", "check scene.yaml -set filter.constraints=none",
+         {"48 of 48 tet4 are filtered", "constraints none"}),
     good("filter_check_of_a_small_step", "check scene.yaml -set filter.time_step=1e-3",
          {"0 of 48 tet4 are filtered"}),
     good("filter_run", "run scene.yaml", {"finished at t = 0.002 s"}),
@@ -34,6 +37,19 @@ const std::vector<Case> cases{
          "stability scene.yaml -set 'bodies.cube.start={kind: flatten_plane, amplitude: 0.5}'",
          {"at rest:", "at t = 0 s: not looked at"}),
     good("filter_paper", "run scene.yaml -set filter.selection=paper -damping_mat_type baij"),
+    good("filter_by_another_solver", "run scene.yaml -projection_ksp_type cg -projection_pc_type jacobi"),
+    bad("filter_projection_option_without_compliance", "-set filter.constraints=none -projection_ksp_type cg",
+        {"-projection_ksp_type: has no effect", "constraints: compliant or paper"}),
+    good("filter_paper_constraints", "run scene.yaml -set filter.constraints=paper"),
+    bad("filter_projection_of_compliance", "-set filter.projection=shake",
+        {"filter.projection", "goes with 'constraints: paper' only"}),
+    bad("filter_lengths_that_held_nodes_contradict",
+        "-set filter.constraints=paper -set obstacles={} "
+        "-set 'bodies.cube.mesh={generate: box, size: [1, 1, 1], cells: [1, 2, 2], cell: tet6}' "
+        "-set 'constraints=[{body: cube, node_set: x_min, velocity: [[0, 0, 0, 0]]}, "
+        "{body: cube, node_set: x_max, velocity: [[0, 50, 0, 0]]}]'",
+        {"filter.constraints: 'paper' keeps lengths", "contradict"}),
+    good("filter_without_constraints", "run scene.yaml -set filter.constraints=none"),
     good("filter_adaptive", "run scene.yaml -set filter.selection=adaptive -set filter.safety=1.5"),
     good("filter_with_softening_and_stiffening",
          "run scene.yaml -set 'events=[{at: 5e-4, set: bodies.cube.material.youngs_modulus, to: 0}, "
@@ -62,6 +78,8 @@ const std::vector<Case> cases{
     bad("filter_of_no_safety", "-set filter.safety=0.5", {"filter.safety", "must be >= 1"}),
     bad("filter_of_an_unknown_selection", "-set filter.selection=adaptiv",
         {"filter.selection", "did you mean 'adaptive'?"}),
+    bad("filter_of_unknown_constraints", "-set filter.constraints=compliantt",
+        {"filter.constraints", "did you mean 'compliant'?"}),
     bad("filter_of_an_unknown_key", "-set filter.timestep=1e-3", {"filter.timestep", "did you mean"}),
     bad("filter_of_smaller_steps_than_made", "-set integrator.time_step=0.05",
         {"integrator.time_step", "must be at most filter.time_step"}),

@@ -2,8 +2,11 @@
 #include "evert/math/vec3.hpp"
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 /// In which way a tetrahedron is bad: which of its distances is short, and so where it vibrates fast.
 ///
@@ -28,5 +31,15 @@ inline constexpr std::array all_shape_classes{ShapeClass::well_shaped, ShapeClas
 
 /// Of a tetrahedron with these corners [m]; its volume must not be zero, its orientation does not matter.
 [[nodiscard]] ShapeClass shape_class(std::span<const Vec3d, 4> corners);
+
+/// What is short in a bad tetrahedron: edges, numbered as in edges_of_tet, or the height of a corner.
+struct ShortDistances {
+  std::vector<std::size_t> edges;
+  std::optional<std::size_t> apex;
+};
+
+/// By its class: of a needle the three edges of the small face, of a wedge the short edge, of a cap the
+/// height of the corner that is near the face opposite; of others all edges.
+[[nodiscard]] ShortDistances short_distances(std::span<const Vec3d, 4> corners);
 
 }  // namespace evert

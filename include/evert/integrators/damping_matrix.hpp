@@ -21,6 +21,7 @@ class AssembledDamping {
   void share_projectors();
   [[nodiscard]] double projector(LocalIndex node, std::size_t i, std::size_t j) const;
   void project_cell(const CellNodes& nodes);
+  void add_strains();
   void add_lumped_masses();
   void add_consistent_masses();
 

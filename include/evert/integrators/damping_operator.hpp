@@ -2,7 +2,10 @@
 #include "evert/contact/velocity_constraints.hpp"
 #include "evert/core/petsc.hpp"
 #include "evert/forces/elastic_forces.hpp"
+#include "evert/integrators/implicit_strains.hpp"
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,11 +15,14 @@ namespace evert {
 /// C is the damping operator at the positions of the last force update, s = Δt/2, P the projector off the
 /// constrained velocities; P (M + s C) P + M (I − P) is the same thing where M is lumped.  PHYSICS 5
 ///
+/// With implicit strains C stands for C + θΔt²/s K_s.
+///
 /// Where M is consistent, A = P (M + s C) P + D (I − P) with D the diagonal of M.
 class DampingOperator {
  public:
-  /// Collective.
-  DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic);
+  /// Collective. `strains` may be null.
+  DampingOperator(const DistributedMesh& mesh, const ElasticForces& elastic,
+                  ImplicitStrains* strains = nullptr);
   DampingOperator(const DampingOperator&) = delete;
   DampingOperator& operator=(const DampingOperator&) = delete;
 
@@ -42,6 +48,7 @@ class DampingOperator {
   [[nodiscard]] double factor() const { return factor_; }
   [[nodiscard]] std::span<const NodeConstraint> constraints() const { return constraints_; }
   [[nodiscard]] const ElasticForces& elastic() const { return elastic_; }
+  [[nodiscard]] const ImplicitStrains* strains() const { return strains_; }
   [[nodiscard]] const DistributedMesh& mesh() const { return mesh_; }
 
   /// The MATSHELL; PCs that need no entries (pbjacobi, jacobi, none) work on it.
@@ -50,17 +57,24 @@ class DampingOperator {
  private:
   template <class Product>
   void add_product(Vec v, Vec out, Product&& product) const;
+  void update_diagonals() const;
   template <class Work>
   void for_each_diagonal_block(Work&& work) const;
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
+  ImplicitStrains* strains_;
   std::span<const double> masses_;  // the diagonal of M
   double factor_ = 0;
   std::span<const NodeConstraint> constraints_;
   mutable NodeField in_, out_;
   mutable bool diagonal_valid_ = false;
-  mutable NodeField normal_, shear_;              // diagonal blocks of C: xx yy zz, yz xz xy
+  mutable NodeField normal_, shear_;  // diagonal blocks of C: xx yy zz, yz xz xy
+  struct OfStrains {
+    NodeField normal, shear;
+    std::uint64_t changes;  // of θΔt² K_s that they are of
+  };
+  mutable std::optional<OfStrains> of_strains_;   // the same of θΔt² K_s, where there is any
   mutable std::vector<double> inverse_diagonal_;  // of A
   MatHandle mat_;
 };

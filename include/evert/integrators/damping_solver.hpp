@@ -10,6 +10,9 @@ namespace evert {
 /// Solves (M + s C) v = b for the velocities of the unconstrained directions, by PETSc's conjugate gradients
 /// with option prefix `damping_`.  PHYSICS 5
 ///
+/// With implicit strains it solves (M + s C) v + θΔt² K_s (v − v₀) = b, v₀ what it starts from: without
+/// damping directly, else with K_s in the operator.
+///
 /// `-damping_mat_type shell|baij|sbaij|aij` chooses the operator (default shell, matrix-free, preconditioned
 /// by its point blocks); all of PETSc's `-damping_ksp_*` and `-damping_pc_*` apply. `-damping_ksp_rtol` is
 /// relative to the residual of the starting guess, that is to the change of momentum that the step asks for,
@@ -17,12 +20,16 @@ namespace evert {
 class DampingSolver {
  public:
   /// Collective. Reads the options; throws UserError for one that cannot work.
-  DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic);
+  /// `strains` may be null; they are to be prepared before each solve.
+  DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic,
+                ImplicitStrains* strains = nullptr);
 
   /// Collective. One for schemes that put damping on the right-hand side: C is taken for zero whatever is
-  /// damped, a solve is a division by the masses, which must be lumped, and no options are read.
+  /// damped, a solve is a division by the masses, which must be lumped, but for `strains`, and no options are
+  /// read.
   [[nodiscard]] static DampingSolver without_damping(const DistributedMesh& mesh,
-                                                     const ElasticForces& elastic);
+                                                     const ElasticForces& elastic,
+                                                     ImplicitStrains* strains = nullptr);
 
   /// Collective. With -help: makes PETSc print what the solver can be told.
   static void print_options(MPI_Comm comm);
@@ -35,15 +42,21 @@ class DampingSolver {
   /// is known. Returns the number of iterations. Throws SimulationError when PETSc reports divergence.
   int solve(double s, Vec b, NodeField& v, std::span<const NodeConstraint> constraints, Vec along = nullptr);
 
-  /// Collective. What the constraints exerted in the last solve, (M + s C) v − b per owned node [N s]; beside
-  /// the constrained directions it is what the tolerance has left. Take an impulse off it to add that to b,
-  /// and then refine().
+  /// Collective. What the constraints exerted in the last solve, its left-hand side less b per owned node [N
+  /// s]; beside the constrained directions it is what the tolerance has left. Take an impulse off it to add
+  /// that to b, and then refine().
   [[nodiscard]] std::span<double> reaction();
 
   /// Collective. The last solve again, from the velocities that it found, for other constraints and for what
   /// was put into its reaction(). Keeps the tolerance of that solve: not relative to the little that is left.
   /// Costs one product less.
   int refine(NodeField& v, std::span<const NodeConstraint> constraints);
+
+  /// Collective. With implicit strains, for the second solve of a step whose first was the last: `b` has the
+  /// impulse of both, `v` is the velocity before the first. Takes off `b` what K_s withheld there, and `v` to
+  /// where the first solve took it, so that each impulse meets K_s once, at its own positions: else angular
+  /// momentum is not kept. To be called before the strains are prepared for the second.
+  void carry_over(Vec b, NodeField& v);
 
   /// Collective. `out` += factor · C v.
   void add_damping(Vec v, Vec out, double factor) const;
@@ -55,17 +68,20 @@ class DampingSolver {
 
  private:
   enum class Damping { implicit, left_out };
-  DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, Damping damping);
+  DampingSolver(const DistributedMesh& mesh, const ElasticForces& elastic, ImplicitStrains* strains,
+                Damping damping);
   void create_ksp();
   int correct(NodeField& v, std::span<const NodeConstraint> constraints, Vec along);
   double go_along(Vec direction);
   [[nodiscard]] double norm_of(Vec residual);
   int iterate();
   bool impose_now(NodeField& v, std::span<const NodeConstraint> constraints);
-  void react(Vec change);
+  void react_to_velocity(Vec velocity);
+  void react_to_change(Vec change);
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
+  ImplicitStrains* strains_;
   std::unique_ptr<DampingOperator> operator_;    // none where iterates() is false
   std::unique_ptr<AssembledDamping> assembled_;  // with -damping_mat_type other than shell
   KspHandle ksp_;

@@ -13,6 +13,10 @@ namespace evert {
 /// Every way to advance. Chosen once.
 using Integrator = std::variant<Newmark, Verlet, SymplecticEuler, ExplicitEuler, Quasistatic>;
 
+/// c of the scheme: without damping, vibrations of frequency ω are stable up to ωΔt = c. 0 where none is,
+/// infinity where nothing vibrates.
+[[nodiscard]] double stability_constant_of(IntegrationMethod method);
+
 /// Collective. `quasistatic` is of that method alone.
 [[nodiscard]] Integrator make_integrator(IntegrationMethod method, const System& system,
                                          const QuasistaticOptions& quasistatic);

@@ -14,6 +14,7 @@ struct StepReport {
   bool stop_requested = false;       ///< some rank wants the run to end here
   int newton_iterations = 0;         ///< over the load steps of a quasistatic step
   int linear_iterations = 0;         ///< of the linear solves in those
+  int projection_iterations = 0;     ///< to keep the lengths of filtered elements
   std::vector<std::string> notes{};  ///< what a user should know, one sentence each; the same on every rank
 };
 

@@ -4,6 +4,8 @@
 #include "evert/contact/rigid_dynamics.hpp"
 #include "evert/forces/body_force.hpp"
 #include "evert/forces/elastic_forces.hpp"
+#include "evert/integrators/implicit_strains.hpp"
+#include "evert/integrators/shape_projection.hpp"
 
 #include <cstdint>
 #include <span>
@@ -20,6 +22,10 @@ struct System {
   PrescribedMotion& prescribed;
   Vec3d gravity;         ///< [m/s^2]
   BodyForce body_force;  ///< besides gravity; empty where there is none
+  ImplicitStrains* implicit_strains =
+      nullptr;  ///< of a compliant filter; null: all of the elasticity is explicit
+
+  ShapeProjection* projection = nullptr;  ///< of a filter with `paper` constraints; null: none
 
   NodeField x;         ///< positions [m]; ghosts are up to date between steps
   NodeField v;         ///< velocities [m/s]
@@ -41,7 +47,7 @@ struct System {
 
   System(const DistributedMesh& distributed, ElasticForces& elastic_forces, Collisions& node_collisions,
          RigidDynamics& rigid_dynamics, PrescribedMotion& prescribed_motion, const Vec3d& gravitation,
-         BodyForce force = {});
+         BodyForce force = {}, ImplicitStrains* strains = nullptr);
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
@@ -50,6 +56,19 @@ struct System {
   /// Collective. f = elastic forces at x and loads at `t` [s], and C(x). To be called whenever x, a material
   /// or gravity changes.
   void update_forces(double t);
+  /// Collective. Before a solve of a step of `dt` [s] that starts from the present forces: brings
+  /// implicit_strains up to date.
+  void prepare_solve(double dt) const {
+    if (implicit_strains != nullptr) implicit_strains->prepare(x, dt, force_updates);
+  }
+  /// Collective. At the beginning of a step, and once nodes have moved, with `held` what holds them from then
+  /// on: keeps the lengths of filtered elements. Returns the iterations that took.
+  void begin_projection() const {
+    if (projection != nullptr) projection->begin(x);
+  }
+  int project(std::span<const NodeConstraint> held, double dt) {
+    return projection != nullptr ? projection->project(x, v, held, dt) : 0;
+  }
   /// Collective. Adds the weights and what the body force does at `t` [s] to `sum`, on owned nodes [N]: all
   /// that does not depend on x.
   void add_loads(double t, NodeField& sum) const;

@@ -1,6 +1,7 @@
 #pragma once
 #include "evert/contact/keyframed_motion.hpp"
 #include "evert/core/number_array.hpp"
+#include "evert/filter/filter_constraints.hpp"
 #include "evert/filter/selection.hpp"
 #include "evert/forces/mass_form.hpp"
 #include "evert/integrators/method.hpp"
@@ -275,6 +276,8 @@ struct FilterConfig {
   double time_step = 0;  ///< [s] > 0
   FilterSelection selection = FilterSelection::spare_mass;
   double safety = 1.25;  ///< [-] ≥ 1
+  FilterConstraints constraints = FilterConstraints::compliant;
+  FilterProjection projection = FilterProjection::shake;  ///< of `paper`
 };
 
 struct CheckpointConfig {

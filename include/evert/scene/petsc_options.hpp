@@ -27,7 +27,8 @@ struct LiveSolvers {
   bool damping = false;
   bool explicit_damping = false;  ///< damped, without a solve
   bool quasistatic = false;
-  bool stability = false;  ///< of evert stability, which no simulation has
+  bool projection = false;  ///< of a filter with compliant constraints
+  bool stability = false;   ///< of evert stability, which no simulation has
 };
 /// Those that a simulation has.
 [[nodiscard]] LiveSolvers solvers_of(const Simulation& simulation);

@@ -84,7 +84,12 @@ class Simulation {
   [[nodiscard]] const NodeField& positions() const { return system_.x; }   ///< [m]
   [[nodiscard]] const NodeField& velocities() const { return system_.v; }  ///< [m/s]
   [[nodiscard]] const ElasticForces& elastic() const { return elastic_; }
-  [[nodiscard]] const std::optional<ModalFilter>& filter() const { return filter_; }
+  /// Null: none.
+  [[nodiscard]] const ModalFilter* filter() const { return filter_.get(); }
+  /// Of a compliant filter; null: none.
+  [[nodiscard]] const ImplicitStrains* implicit_strains() const { return implicit_strains_.get(); }
+  /// Of a filter with `paper` constraints; null: none.
+  [[nodiscard]] const ShapeProjection* projection() const { return projection_.get(); }
   /// Smallest signed principal stretch per owned cell, `block` counting as in DistributedMesh::cells.
   void min_stretch(std::size_t block, std::span<double> per_cell) const;
 
@@ -130,7 +135,9 @@ class Simulation {
 
   DistributedMesh mesh_;
   ElasticForces elastic_;
-  std::optional<ModalFilter> filter_;
+  std::unique_ptr<ModalFilter> filter_;
+  std::unique_ptr<ImplicitStrains> implicit_strains_;  // with a compliant filter
+  std::unique_ptr<ShapeProjection> projection_;        // with one of `paper` constraints
   Collisions collisions_;
   RigidDynamics rigid_;
   PrescribedMotion prescribed_;

@@ -1,0 +1,234 @@
+// The constraints of paper B: which there are, how they are projected, what is kept.
+#include "evert/core/error.hpp"
+#include "evert/integrators/shape_projection.hpp"
+#include "evert/math/nodal.hpp"
+#include "evert/mesh/cell_geometry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "tests/support/scenes.hpp"
+#include "tests/support/shared_meshes.hpp"
+#include "tests/support/verify.hpp"
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evert {
+namespace {
+
+constexpr Lame reference_lame = Lame::from_young_poisson(1e4, 0.3);
+constexpr double stack_step = 0.7e-3;  // [s]
+
+/// A mesh with filtered elements and their constraints.
+struct Constrained {
+  DistributedMesh mesh;
+  ElasticForces elastic;
+  ModalFilter filter;
+  ShapeProjection projection;
+
+  Constrained(const std::string& path, double density, double time_step, FilterProjection form)
+      : mesh(test::distributed(path)),
+        elastic(mesh, std::vector(mesh.regions.size(),
+                                  ElasticProperties{density, RotatedLinear{.lame = reference_lame}, {}})),
+        filter(mesh, elastic,
+               {.time_step = time_step,
+                .selection = FilterSelection::paper,
+                .constraints = FilterConstraints::paper,
+                .projection = form}),
+        projection(mesh, elastic, filter) {}
+
+  [[nodiscard]] NodeField at_rest() const {
+    NodeField x(mesh);
+    for (LocalIndex i = 0; i < mesh.local_nodes(); ++i)
+      set_node_value(x.local(), i, mesh.rest_positions[static_cast<std::size_t>(i)]);
+    return x;
+  }
+  [[nodiscard]] GlobalIndex constraints() const {
+    auto count = static_cast<GlobalIndex>(filter.shape_constraints().size());
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, mesh.comm);
+    return count;
+  }
+  /// Collective. In lengths.
+  [[nodiscard]] double largest_violation(NodeField& x) const {
+    elastic.halo().begin_update(x);
+    elastic.halo().end_update(x);
+    double largest = 0;
+    TetRow gradient;
+    for (const auto& constraint : filter.shape_constraints())
+      largest = std::max(largest, std::abs(violation(constraint, x.local(), gradient)) / constraint.rest);
+    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, mesh.comm);
+    return largest;
+  }
+};
+
+TEST(ShapeConstraint, HasTheGradientOfItsViolation) {
+  const std::array<double, 12> x{0.1, 0.2, 0.3, 1.1, 0.1, -0.1, 0.2, 0.9, 0.1, 0.3, 0.2, 0.7};
+  for (const ShapeConstraint& constraint :
+       {ShapeConstraint{{0, 2, -1, -1}, 0.7}, ShapeConstraint{{3, 0, 1, 2}, 0.4},
+        ShapeConstraint{{1, 3, 0, 2}, 0.4}}) {
+    TetRow gradient, unused;
+    static_cast<void>(violation(constraint, x, gradient));
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (constraint.nodes[a] < 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        constexpr double h = 1e-6;
+        auto more = x, less = x;
+        more[3 * static_cast<std::size_t>(constraint.nodes[a]) + k] += h;
+        less[3 * static_cast<std::size_t>(constraint.nodes[a]) + k] -= h;
+        const double slope =
+            (violation(constraint, more, unused) - violation(constraint, less, unused)) / (2 * h);
+        EXPECT_NEAR(gradient[a][k], slope, 1e-8);
+      }
+    }
+  }
+}
+
+/// All edges of the filtered elements of this rank.
+std::vector<ShapeConstraint> all_edges(const Constrained& body) {
+  std::set<std::pair<LocalIndex, LocalIndex>> edges;
+  auto clamp = body.filter.clamps().begin();
+  for (const auto& entry : body.mesh.cells)
+    for (std::size_t first = 0; first < entry.nodes.size(); first += 4)
+      if ((clamp++)->limit > 0)
+        for (const auto& [a, b] : edges_of_tet)
+          edges.insert(std::minmax(entry.nodes[first + a], entry.nodes[first + b]));
+  std::vector<ShapeConstraint> constraints;
+  for (const auto& [a, b] : edges) {
+    const auto at = [&](LocalIndex node) { return body.mesh.rest_positions[static_cast<std::size_t>(node)]; };
+    constraints.push_back({{a, b, -1, -1}, norm(at(b) - at(a))});
+  }
+  return constraints;
+}
+
+/// Of J at rest.
+Eigen::Index rank_of_rows(const Constrained& body, const std::vector<ShapeConstraint>& constraints) {
+  const auto x = body.at_rest();
+  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(Eigen::Index(constraints.size()), 3 * body.mesh.owned_nodes);
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    TetRow row;
+    EXPECT_NEAR(violation(constraints[k], x.local(), row), 0, 1e-15);
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (constraints[k].nodes[a] >= 0)
+          j(Eigen::Index(k), 3 * constraints[k].nodes[a] + Eigen::Index(i)) += row[a][i];
+  }
+  Eigen::FullPivLU<Eigen::MatrixXd> lu(j);
+  lu.setThreshold(1e-9);
+  return lu.rank();
+}
+
+/// Its wedges share no short edge; all edges of theirs are 21, none of which depends on the others.
+TEST(WedgeStack, HasIndependentEdges) {
+  const auto path = test::shared_mesh("wedge_stack.msh");
+  if (!path) GTEST_SKIP() << "wedge_stack.msh is not in EVERT_SHARED_MESHES";
+  if (size_of(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "looks at the whole of J";
+  const Constrained stack(*path, 0.05, stack_step, FilterProjection::shake);
+  const auto& kept = stack.filter.shape_constraints();
+  const auto all = all_edges(stack);
+  EXPECT_EQ(kept.size(), static_cast<std::size_t>(stack.filter.filtered_cells()));
+  EXPECT_EQ(rank_of_rows(stack, kept), Eigen::Index(kept.size()));
+  EXPECT_EQ(all.size(), 21U);
+  EXPECT_EQ(rank_of_rows(stack, all), 21);
+  test::verify("paper constraints: wedge stack, edges of its filtered wedges", "21",
+               static_cast<double>(all.size()), "");
+  test::verify("paper constraints: wedge stack, rank of these", "21",
+               static_cast<double>(rank_of_rows(stack, all)), "");
+  test::verify("paper constraints: wedge stack, short edges that are kept, one a wedge", "independent",
+               static_cast<double>(kept.size()), "");
+}
+
+std::unique_ptr<Simulation> moving_stack(const std::string& path, FilterProjection form,
+                                         MPI_Comm comm = PETSC_COMM_WORLD) {
+  auto mesh = test::distributed(path, comm);
+  SimulationDefinition definition;
+  definition.properties.assign(mesh.regions.size(), {0.05, RotatedLinear{.lame = reference_lame}, {}});
+  definition.fixed_time_step = stack_step;
+  definition.filter = {.time_step = stack_step,
+                       .selection = FilterSelection::paper,
+                       .constraints = FilterConstraints::paper,
+                       .projection = form};
+  for (LocalIndex i = 0; i < mesh.owned_nodes; ++i) {
+    const Vec3d& p = mesh.rest_positions[static_cast<std::size_t>(i)];
+    definition.initial_velocities.push_back(0.1 * (Vec3d{1, 2, 0.5} + cross(Vec3d{0.3, 1, -0.5}, p)) +
+                                            0.05 * Vec3d{p[0] + 0.5 * p[1], -0.5 * p[1], -0.4 * p[0]});
+  }
+  return std::make_unique<Simulation>(std::move(mesh), std::move(definition));
+}
+
+TEST(WedgeStack, IsProjectedInThreeIterationsAndKeepsMomenta) {
+  const auto path = test::shared_mesh("wedge_stack.msh");
+  if (!path) GTEST_SKIP() << "wedge_stack.msh is not in EVERT_SHARED_MESHES";
+  if (size_of(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "DoesNotDependOnTheNumberOfRanks";
+  for (const auto form : {FilterProjection::shake, FilterProjection::goldenthal}) {
+    const auto body = moving_stack(*path, form);
+    const auto before = body->measure();
+    int most = 0;
+    for (int step = 0; step < 2000; ++step)
+      most = std::max(most, body->step(stack_step).projection_iterations);
+    const auto after = body->measure();
+    const double momentum = norm(after.momentum - before.momentum) / norm(before.momentum);
+    const double angular =
+        norm(after.angular_momentum - before.angular_momentum) / norm(before.angular_momentum);
+    const std::string name = form == FilterProjection::shake ? "shake" : "goldenthal";
+    EXPECT_GE(most, 1);
+    EXPECT_LE(most, 3) << name;
+    EXPECT_LE(momentum, 1e-11) << name;
+    if (form == FilterProjection::shake) {
+      EXPECT_LE(angular, 1e-9);
+    }
+    test::verify("paper constraints: wedge stack, " + name + ", most iterations to 1e-6 in 2000 steps",
+                 "at most 3", most, "");
+    test::verify("paper constraints: wedge stack, " + name + ", change of momentum in 2000 steps, relative",
+                 "0", momentum, "1e-11");
+    test::verify(
+        "paper constraints: wedge stack, " + name + ", change of angular momentum in 2000 steps, relative",
+        form == FilterProjection::shake ? "0" : "reported", angular,
+        form == FilterProjection::shake ? "1e-9" : "");
+  }
+}
+
+TEST(WedgeStack, DoesNotDependOnTheNumberOfRanks) {
+  const auto path = test::shared_mesh("wedge_stack.msh");
+  if (!path) GTEST_SKIP() << "wedge_stack.msh is not in EVERT_SHARED_MESHES";
+  if (size_of(PETSC_COMM_WORLD) == 1) GTEST_SKIP() << "one rank";
+  const auto shared = moving_stack(*path, FilterProjection::shake);
+  EXPECT_GT(shared->projection()->rows().spanning_rows(), 0) << "clusters must span ranks";
+  const auto whole = moving_stack(*path, FilterProjection::shake, PETSC_COMM_SELF);
+  const double difference =
+      test::largest_difference(test::after_steps(*shared, 200), test::after_steps(*whole, 200));
+  EXPECT_LE(difference, 1e-9);
+  test::verify("paper constraints: wedge stack after 200 steps on one rank and on several [m]", "the same",
+               difference, "1e-9");
+}
+
+/// Most elements of the ball are filtered: 20,000 lengths, of which fewer than half are independent.
+TEST(Ball, IsProjectedWithTwentyThousandConstraints) {
+  const auto path = test::shared_mesh("ball20k.msh");
+  if (!path) GTEST_SKIP() << "ball20k.msh is not in EVERT_SHARED_MESHES";
+  if (size_of(PETSC_COMM_WORLD) == 1) GTEST_SKIP() << "across ranks";
+  Constrained ball(*path, 1000, 0.02, FilterProjection::shake);
+  EXPECT_GE(ball.constraints(), 20000);
+  auto x = ball.at_rest();
+  NodeField v(ball.mesh);
+  ball.projection.begin(x);
+  for (LocalIndex i = 0; i < ball.mesh.owned_nodes; ++i) {
+    const Vec3d p = ball.mesh.rest_positions[static_cast<std::size_t>(i)];
+    set_node_value(x.owned(), i,
+                   p + 1e-4 * Vec3d{std::sin(9 * p[1]), std::sin(7 * p[2]), std::sin(8 * p[0])});
+  }
+  x.touched();
+  EXPECT_GT(ball.largest_violation(x), 1e-5);
+  const int iterations = ball.projection.project(x, v, {}, 1e-3);
+  EXPECT_LE(ball.largest_violation(x), 1e-6);
+  test::verify("paper constraints: ball of 19,964 tetrahedra, constraints", "at least 20000",
+               static_cast<double>(ball.constraints()), "");
+  test::verify("paper constraints: the same, iterations to 1e-6 on several ranks", "few", iterations, "");
+}
+
+}  // namespace
+}  // namespace evert
