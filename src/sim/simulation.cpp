@@ -87,8 +87,12 @@ std::vector<std::unique_ptr<Obstacle>> possible_obstacles(SimulationDefinition& 
   return std::move(definition.obstacles);
 }
 
-/// `options` with the stability constant of the integrator.
-ModalFilterOptions filter_for(ModalFilterOptions options, const Integrator& integrator) {
+/// `options` with what the integrator does.
+ModalFilterOptions filter_for(const SimulationDefinition& definition, const Integrator& integrator) {
+  auto options = *definition.filter;
+  options.implicit_damping = definition.method == IntegrationMethod::newmark;
+  options.integrator_safety = definition.time_step.safety;
+  options.fixed_time_step = definition.fixed_time_step;
   options.stability_constant =
       std::visit([](const auto& chosen) { return std::remove_cvref_t<decltype(chosen)>::stability_constant; },
                  integrator);
@@ -154,7 +158,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
-  if (definition.filter) filter_.emplace(mesh_, elastic_, filter_for(*definition.filter, integrator_));
+  if (definition.filter) filter_.emplace(mesh_, elastic_, filter_for(definition, integrator_));
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
   forces_stale_ = true;
@@ -237,7 +241,7 @@ double Simulation::suggested_time_step() {
       },
       integrator_);
   double dt = time_step_.suggest(system_, limit);
-  if (filter_) dt = std::min(dt, filter_->options().time_step);
+  if (filter_) dt = std::min(dt, filter_->time_step());
   if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
   // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
   activate_highest(system_.time + time_step_.horizon());
