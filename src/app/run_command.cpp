@@ -13,6 +13,7 @@
 #include "evert/scene/petsc_options.hpp"
 #include "evert/sim/shape_error.hpp"
 
+#include "filter_report.hpp"
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -203,6 +204,10 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
   reject_unused_options(comm, arguments.allow_unknown_options, solvers_of(*built.simulation));
   auto& simulation = *built.simulation;
   if (!arguments.restart.empty()) restore(simulation, arguments.restart, scene.identity);
+  if (const auto* filter = simulation.filter()) {
+    const auto lines = filter_lines(comm, *filter);
+    if (rank_of(comm) == 0 && !arguments.quiet) std::printf("filter: %s\n", lines.front().c_str());
+  }
   auto observers = make_observers(scene, simulation, files, arguments);
 
   const auto end = run_loop(simulation, scene.end_time, observers.all);

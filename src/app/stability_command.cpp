@@ -169,7 +169,7 @@ int stability_command(MPI_Comm comm, const StabilityArguments& arguments, std::o
         << simulation.mesh().total_cells << " elements; held nodes count as free\n\n";
     write_stability(findings, "at rest", regions, out);
   }
-  if (deformed && simulation.filter()) {
+  if (deformed && simulation.filter() && std::isfinite(simulation.filter()->time_step())) {
     if (root)
       out << formatted("\nat t = %g s: not looked at: filtered elements have a stiffness at rest only\n",
                        simulation.time());

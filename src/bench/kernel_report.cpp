@@ -54,7 +54,7 @@ std::string ceiling_text(const KernelRate& kernel) {
 
 std::string line(const std::string& title, const Rate& rate, const std::string& unit,
                  const std::string& rest) {
-  return formatted("%-26s%8s%8s  %-9s%s", title.c_str(), number_text(rate.best).c_str(),
+  return formatted("%-29s%8s%8s  %-9s%s", title.c_str(), number_text(rate.best).c_str(),
                    number_text(rate.median).c_str(), unit.c_str(), rest.c_str());
 }
 
@@ -84,6 +84,12 @@ JsonValue by_kernel(const KernelSizeReport& size, double KernelRate::*number) {
   return JsonValue::object(members);
 }
 
+JsonValue filtered_costs(const KernelSizeReport& size) {
+  std::vector<std::pair<std::string, JsonValue>> members;
+  for (const auto& cost : size.filtered_costs) members.emplace_back(cost.model, cost.of_unfiltered);
+  return JsonValue::object(members);
+}
+
 JsonValue costs(const KernelSizeReport& size) {
   std::vector<std::pair<std::string, JsonValue>> members;
   for (const auto& kernel : size.kernels)
@@ -109,12 +115,14 @@ void print_table(const KernelSizeReport& report, std::ostream& out) {
   put(out, formatted("\n%s: %lld tets (%.1f %% inverted), %lld hexes; %d samples each", report.size.c_str(),
                      static_cast<long long>(report.tets), 100 * report.inverted,
                      static_cast<long long>(report.hexes), report.rounds));
-  put(out, formatted("%-26s%8s%8s  %-9s%-15s%7s%6s%7s   %s", "", "best", "median", "", "  multiple", "flop",
+  put(out, formatted("%-29s%8s%8s  %-9s%-15s%7s%6s%7s   %s", "", "best", "median", "", "  multiple", "flop",
                      "div", "byte", "ceiling"));
   for (const auto& kernel : report.kernels)
     put(out, line(kernel.title, kernel.rate, kernel.unit,
                   formatted("%-15s%-20s%s", multiple_text(kernel).c_str(), cost_text(kernel.cost).c_str(),
                             ceiling_text(kernel).c_str())));
+  for (const auto& [model, of_unfiltered] : report.filtered_costs)
+    put(out, formatted("a filtered tet4 costs %.2f unfiltered ones: %s", of_unfiltered, model.c_str()));
   const auto ceiling = [&](const char* title, const Rate& rate, const char* unit) {
     put(out, line(title, {rate.best / 1e3, rate.median / 1e3}, unit, ""));
   };
@@ -151,6 +159,7 @@ std::string json_text(const KernelReport& report) {
   add("triad_gbs", [](const KernelSizeReport& size) { return rate_value(size.bytes, 1e9); });
   add("multiple_of_naive", [](const auto& size) { return by_kernel(size, &KernelRate::of_naive); });
   add("multiple_of_baij", [](const auto& size) { return by_kernel(size, &KernelRate::of_baij); });
+  add("filtered_cost", [](const auto& size) { return filtered_costs(size); });
   add("share_of_ceiling", [](const auto& size) { return by_kernel(size, &KernelRate::of_ceiling); });
   return JsonValue::object(members).text() + '\n';
 }

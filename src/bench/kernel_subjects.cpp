@@ -2,6 +2,7 @@
 
 #include "evert/bench/level_kernels.hpp"
 #include "evert/core/collective.hpp"
+#include "evert/filter/filtered_block.hpp"
 
 #include <algorithm>
 
@@ -42,6 +43,29 @@ ElasticForces elastic(const Specimen& specimen, DampingModel damping) {
   return {specimen.mesh, std::span(&all, 1)};
 }
 
+/// Every cell of the rank clamped to half of its largest eigenvalue.
+FilteredForces filtered(const Specimen& specimen, const Material& of_cells) {
+  const auto& cells = specimen.mesh.cells.front();
+  const Lame lame = std::visit([](const auto& model) { return model.lame; }, of_cells);
+  std::vector<CellClamp> clamps;
+  for (std::size_t first = 0; first < cells.nodes.size(); first += 4) {
+    const auto shape = tet_shape(std::span(cells.nodes).subspan(first, 4), specimen.mesh.rest_positions);
+    TetMasses masses{};
+    masses.fill(density * shape.volume / 4);
+    clamps.push_back({masses, 0.5 * element_modes(shape, masses, lame).largest()});
+  }
+  return {of_cells, make_filtered_block({cells.type, cells.nodes, cells.interior, density, {}},
+                                        specimen.mesh.rest_positions, of_cells, Damping{}, clamps)};
+}
+
+std::vector<FilteredForces> all_filtered(const Specimen& specimen) {
+  std::vector<FilteredForces> all;
+  all.push_back(filtered(specimen, material));
+  for (const Material& one : other_materials())
+    if (!has_fibres(one)) all.push_back(filtered(specimen, one));
+  return all;
+}
+
 /// The same number on every rank, for parts of some thousand cells.
 std::size_t parts_of(const DistributedMesh& mesh) {
   constexpr GlobalIndex cells_of_part = 4096;
@@ -71,6 +95,7 @@ TetSubject::TetSubject(MPI_Comm comm, int divisions)
       plain_(elastic(specimen_, DampingModel::none)),
       damped_(elastic(specimen_, DampingModel::rotated)),
       others_(forces_of(specimen_, other_materials())),
+      filtered_(all_filtered(specimen_)),
       operator_(specimen_.mesh, damped_),
       assembled_(operator_, MATBAIJ),
       naive_(specimen_.mesh.cells.front().nodes, specimen_.mesh.rest_positions, material),
@@ -96,6 +121,13 @@ KernelCost TetSubject::baij_cost() const {
   // A multiplication and an addition for each entry; a column number for each block of nine.
   const double bytes = (sizeof(PetscScalar) + sizeof(PetscInt) / 9.0) * info.nz_used;
   return {2 * info.nz_used / cells(), 0, bytes / cells()};
+}
+
+void TetSubject::force(const FilteredForces& of) {
+  std::ranges::fill(result_.local(), 0.0);
+  const double* x = specimen_.positions.local().data();
+  of.block->update(x, result_.local().data(), of.block->interior());
+  of.block->update(x, result_.local().data(), of.block->boundary());
 }
 
 void TetSubject::damping() {

@@ -47,6 +47,12 @@ struct MaterialForces {
 [[nodiscard]] std::vector<Material> other_materials();
 [[nodiscard]] std::vector<Material> materials_with_fibres();
 
+/// The tetrahedra of a specimen as the modal filter leaves them, all of them.
+struct FilteredForces {
+  Material material;
+  std::unique_ptr<ElasticBlock> block;
+};
+
 /// A box of tetrahedra and all that is done to it.
 class TetSubject {
  public:
@@ -69,6 +75,9 @@ class TetSubject {
   void damped_force() { damped_.update(specimen_.positions, result_); }
   [[nodiscard]] const auto& others() const { return others_; }
   void force(MaterialForces& of) { of.elastic.update(specimen_.positions, result_); }
+  /// Filtered, of every model that can be; halo left out.
+  [[nodiscard]] const auto& filtered() const { return filtered_; }
+  void force(const FilteredForces& of);
   void damping();
   void matrix_free_product() { check(MatMult(operator_.mat(), specimen_.velocities.vec(), result_.vec())); }
   void baij_product() { check(MatMult(assembled_.mat(), specimen_.velocities.vec(), result_.vec())); }
@@ -83,6 +92,7 @@ class TetSubject {
   ElasticForces plain_;
   ElasticForces damped_;
   std::vector<std::unique_ptr<MaterialForces>> others_;
+  std::vector<FilteredForces> filtered_;
   DampingOperator operator_;
   AssembledDamping assembled_;
   NaiveForces naive_;

@@ -43,6 +43,19 @@ void add_other_materials(std::vector<Kernel>& kernels, CellType type, Subject& s
                        with_nodes(force_cost(type, of->material), nodes_per_point)});
 }
 
+std::string filtered_key(const std::string& model) { return "tet_filtered_" + model + "_mps"; }
+
+/// Adds the forces of filtered tetrahedra.
+void add_filtered(std::vector<Kernel>& kernels, TetSubject& subject) {
+  for (const auto& of : subject.filtered())
+    kernels.push_back({filtered_key(model_of(of.material)),
+                       "filtered " + model_of(of.material),
+                       "Mtet/s",
+                       {subject.cells(), [&subject, &of] { subject.force(of); }},
+                       Yardstick::naive,
+                       {}});
+}
+
 /// The force of one element.
 Kernel force_kernel(const std::string& key, CellType type, ElementSubject& cells) {
   const auto cost = with_nodes(force_cost(type, bench_material()), cells.nodes_per_point());
@@ -126,6 +139,16 @@ double median_of(std::span<const KernelRate> kernels, const std::string& key) {
   return std::ranges::find(kernels, key, &KernelRate::key)->rate.median;
 }
 
+std::vector<FilteredCost> filtered_costs(const TetSubject& tets, std::span<const KernelRate> kernels) {
+  std::vector<FilteredCost> all;
+  for (const auto& of : tets.filtered()) {
+    const auto model = model_of(of.material);
+    const auto unfiltered = model == model_of(bench_material()) ? "tet_force_mps" : "tet_" + model + "_mps";
+    all.push_back({model, median_of(kernels, unfiltered) / median_of(kernels, filtered_key(model))});
+  }
+  return all;
+}
+
 double sum_over_ranks(MPI_Comm comm, double value) {
   MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, comm);
   return value;
@@ -149,6 +172,7 @@ KernelSizeReport measure_kernels(MPI_Comm comm, const KernelSize& size, double s
 
   auto kernels = kernels_of(tets, hexes, wedges, quadratic);
   add_other_materials(kernels, CellType::tet4, tets, tets.cells(), tets.nodes_per_cell());
+  add_filtered(kernels, tets);
   add_other_materials(kernels, CellType::hex8, hexes, hexes.points(), hexes.nodes_per_point());
   std::vector<Workload> workloads;
   for (const auto& kernel : kernels) workloads.push_back(kernel.workload);
@@ -167,7 +191,8 @@ KernelSizeReport measure_kernels(MPI_Comm comm, const KernelSize& size, double s
                           .flops = ceiling_rates[0],
                           .divisions = ceiling_rates[1],
                           .bytes = ceiling_rates[2],
-                          .kernels = {}};
+                          .kernels = {},
+                          .filtered_costs = {}};
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const auto& [key, title, unit, workload, yardstick, cost] = kernels[i];
     report.kernels.push_back(
@@ -181,6 +206,7 @@ KernelSizeReport measure_kernels(MPI_Comm comm, const KernelSize& size, double s
     if (kernels[i].yardstick == Yardstick::baij)
       kernel.of_baij = kernel.rate.median / median_of(report.kernels, "baij_matmult_mtps");
   }
+  report.filtered_costs = filtered_costs(tets, report.kernels);
   return report;
 }
 

@@ -62,11 +62,11 @@ StrainFilter strain_filter(const ElementModes& modes, const Lame& lame, double l
       roots[k] = eigenvalues[k] > limit ? std::sqrt(limit / eigenvalues[k]) : 1;
     return roots;
   };
-  if (!(modes.stretches[2] > limit)) return {modes.axes, identity<double>(), factors(modes.shears)};
+  if (!(modes.stretches[2] > limit)) return {{identity<double>(), factors(modes.shears)}, modes.axes};
   const Mat3d& q = modes.stretch_modes;
   const Mat3d damped = times_transpose(q * diagonal(factors(modes.stretches)), q);
-  return {modes.axes, power_of_elasticity(lame, -0.5) * damped * power_of_elasticity(lame, 0.5),
-          factors(modes.shears)};
+  return {{power_of_elasticity(lame, -0.5) * damped * power_of_elasticity(lame, 0.5), factors(modes.shears)},
+          modes.axes};
 }
 
 TetMatrix element_stiffness(const TetShape& shape, const Lame& lame) {

@@ -34,7 +34,8 @@ void require_what_can_be_filtered(const DistributedMesh& mesh, const ElasticForc
 /// Collective. Throws UserError where all six vibrations of every element of a region are too fast even
 /// against all the mass of its nodes: then, whatever the selection, the filter replaces all of its stiffness.
 /// Where a single one is slow enough, softening the others reaches any step.
-void require_stiffness_to_be_left(const FilterProblem& problem, const ModalFilterOptions& options) {
+void require_stiffness_to_be_left(const FilterProblem& problem, const ModalFilterOptions& options,
+                                  double time_step) {
   const auto& mesh = problem.mesh;
   std::vector<double> slowest(mesh.regions.size(), std::numeric_limits<double>::infinity());
   auto next = problem.cells.begin();
@@ -47,12 +48,12 @@ void require_stiffness_to_be_left(const FilterProblem& problem, const ModalFilte
   MPI_Allreduce(MPI_IN_PLACE, slowest.data(), static_cast<int>(slowest.size()), MPI_DOUBLE, MPI_MIN,
                 mesh.comm);
   for (std::size_t r = 0; r < slowest.size(); ++r)
-    if (slowest[r] > options.limit() && std::isfinite(slowest[r]))
+    if (slowest[r] > options.limit_of(time_step) && std::isfinite(slowest[r]))
       throw UserError(
           formatted("filter.time_step: no filter can reach %g s with a safety of %g: every element of '%s' "
                     "would have to be softened in all directions, and nothing of its material be left; "
                     "allowed is less than %.3g s",
-                    options.time_step, options.safety, mesh.regions[r].c_str(),
+                    time_step, options.safety, mesh.regions[r].c_str(),
                     options.stability_constant / std::sqrt(slowest[r]) / options.safety));
 }
 
@@ -62,15 +63,19 @@ ModalFilter::ModalFilter(const DistributedMesh& mesh, ElasticForces& elastic,
                          const ModalFilterOptions& options)
     : mesh_(mesh), elastic_(elastic), options_(options) {
   require_what_can_be_filtered(mesh, elastic);
+  if (options_.automatic()) {
+    choose();
+    return;
+  }
   const auto problem = filter_problem(mesh, elastic);
-  require_stiffness_to_be_left(problem, options);
+  require_stiffness_to_be_left(problem, options, options.time_step);
   clamps_.resize(problem.cells.size());
   update(problem, ChangedNodes(problem.masses.size(), true), CellClamps(clamps_));
 }
 
 ModalFilter::ModalFilter(const ModalFilter& before, const DistributedMesh& mesh, ElasticForces& elastic,
                          const TopologyChange& change)
-    : mesh_(mesh), elastic_(elastic), options_(before.options_) {
+    : mesh_(mesh), elastic_(elastic), options_(before.options_), automatic_(before.automatic_) {
   require_what_can_be_filtered(mesh, elastic);
   const auto problem = filter_problem(mesh, elastic);
   for (const LocalIndex origin : change.origins)
@@ -78,9 +83,31 @@ ModalFilter::ModalFilter(const ModalFilter& before, const DistributedMesh& mesh,
   update(problem, change.changed, CellClamps(clamps_.size()));
 }
 
-void ModalFilter::material_changed(std::int32_t region) {
+void ModalFilter::choose() {
+  std::vector<SeparateCells> none;
+  for (std::size_t e = 0; e < mesh_.cells.size(); ++e) none.push_back({.entry = e});
+  if (filtered_on_any_rank()) elastic_.separate(std::move(none));
   const auto problem = filter_problem(mesh_, elastic_);
-  require_stiffness_to_be_left(problem, options_);
+  clamps_.assign(problem.cells.size(), {});
+  stiff_cells_.clear();
+  shape_constraints_.clear();
+  ++revision_;
+  automatic_ = choose_time_step(problem, options_);
+  if (!std::isfinite(time_step())) return;
+  require_stiffness_to_be_left(problem, options_, time_step());
+  update(problem, ChangedNodes(problem.masses.size(), true), CellClamps(clamps_));
+}
+
+bool ModalFilter::filtered_on_any_rank() const {
+  int filtered = filtered_cells() > 0 ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &filtered, 1, MPI_INT, MPI_MAX, mesh_.comm);
+  return filtered != 0;
+}
+
+void ModalFilter::material_changed(std::int32_t region) {
+  if (options_.automatic()) return choose();
+  const auto problem = filter_problem(mesh_, elastic_);
+  require_stiffness_to_be_left(problem, options_, options_.time_step);
   NodalSums of_region(problem);
   for (const auto& entry : mesh_.cells)
     if (entry.region == region)
@@ -94,7 +121,8 @@ void ModalFilter::material_changed(std::int32_t region) {
 
 void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& changed,
                          const CellClamps& in_force) {
-  looked_at_ = select(options_.selection, problem, options_.limit(), changed, clamps_);
+  if (!std::isfinite(time_step())) return;  // of a body that was cut
+  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
   std::vector<SeparateCells> separate;
   std::size_t first = 0;
   for (std::size_t e = 0; e < mesh_.cells.size(); ++e) {

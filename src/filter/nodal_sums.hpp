@@ -12,6 +12,9 @@ class NodalSums {
   [[nodiscard]] double& at(LocalIndex node, std::size_t k) {
     return field_.local()[3 * static_cast<std::size_t>(node) + k];
   }
+  [[nodiscard]] double at(LocalIndex node, std::size_t k) const {
+    return field_.local()[3 * static_cast<std::size_t>(node) + k];
+  }
   /// Collective. From what each rank has added to the sums of all, ghosts included.
   void share() {
     halo_.begin_add(field_);

@@ -2,6 +2,7 @@
 
 #include "adaptive.hpp"
 #include "nodal_sums.hpp"
+#include "spare_mass.hpp"
 #include <algorithm>
 
 namespace evert {
@@ -32,54 +33,24 @@ LocalIndex select_paper(const FilterProblem& problem, double limit, const Change
     if (!touches(cell, changed)) continue;
     ++looked_at;
     const auto masses = cell.own_masses();
-    clamps[c] = element_modes(cell.shape, masses, cell.lame).largest() > limit ? CellClamp{masses, limit}
-                                                                               : CellClamp{};
+    clamps[c] = own_eigenvalue(cell) > limit ? CellClamp{masses, limit} : CellClamp{};
   }
   return looked_at;
 }
 
-/// ‖K_e,aa‖: the largest eigenvalue of V (μ|g|² I + (λ + μ) g gᵀ).
-double stiffness_at(const FilterCell& cell, std::size_t a) {
-  const Vec3d& g = cell.shape.gradients[a];
-  return cell.shape.volume * (cell.lame.lambda + 2 * cell.lame.mu) * dot(g, g);
-}
-
-/// A cell with λ(K_e, M_e) ≤ limit gets along with λ/limit of its own masses. What is left at a node is
-/// spare, and goes to the others there in proportion to their stiffness. The shares sum to the masses, and so
-/// no eigenvalue of the body exceeds the largest of any cell against its shares.
 LocalIndex select_spare_mass(const FilterProblem& problem, double limit, const ChangedNodes& changed,
                              CellClamps& clamps) {
   const ChangedNodes needed = with_neighbours(problem, changed);
-  std::vector<double> own(problem.cells.size());  // λ(K_e, M_e), where it is needed
-  NodalSums sums(problem);                        // mass that slow cells need; stiffness of fast ones
+  std::vector<double> own(problem.cells.size());  // where it is needed
   LocalIndex looked_at = 0;
   for (std::size_t c = 0; c < problem.cells.size(); ++c) {
-    const auto& cell = problem.cells[c];
-    if (!touches(cell, needed)) continue;
+    if (!touches(problem.cells[c], needed)) continue;
     ++looked_at;
-    const auto masses = cell.own_masses();
-    own[c] = element_modes(cell.shape, masses, cell.lame).largest();
-    for (std::size_t a = 0; a < 4; ++a) {
-      if (own[c] > limit)
-        sums.at(cell.nodes[a], 1) += stiffness_at(cell, a);
-      else
-        sums.at(cell.nodes[a], 0) += own[c] / limit * masses[a];
-    }
+    own[c] = own_eigenvalue(problem.cells[c]);
   }
-  sums.share();
-  for (std::size_t c = 0; c < problem.cells.size(); ++c) {
-    const auto& cell = problem.cells[c];
-    if (!touches(cell, changed)) continue;
-    clamps[c] = {};
-    if (!(own[c] > limit)) continue;
-    TetMasses shares{};
-    for (std::size_t a = 0; a < 4; ++a) {
-      const double spare =
-          problem.masses[static_cast<std::size_t>(cell.nodes[a])] - sums.at(cell.nodes[a], 0);
-      shares[a] = spare * stiffness_at(cell, a) / sums.at(cell.nodes[a], 1);
-    }
-    if (element_modes(cell.shape, shares, cell.lame).largest() > limit) clamps[c] = {shares, limit};
-  }
+  const SpareMass spare(problem, own, limit);
+  for (std::size_t c = 0; c < problem.cells.size(); ++c)
+    if (touches(problem.cells[c], changed)) clamps[c] = spare.clamp(c);
   return looked_at;
 }
 

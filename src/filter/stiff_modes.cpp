@@ -2,8 +2,10 @@
 
 #include "evert/core/error.hpp"
 #include "evert/forces/kernels/tangent_bound.hpp"
+#include "evert/math/nodal.hpp"
+#include "evert/math/svd3.hpp"
 
-#include "filtered_cell.hpp"
+#include "torque.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -69,16 +71,20 @@ StiffnessNow stiffness_now(const Material& material, const Vec3d& stretches) {
 
 double stiff_rows(const StiffCell& cell, const Material& material, std::span<const double> x,
                   std::span<TetRow> rows) {
-  TetValues at;
-  for (std::size_t a = 0; a < 4; ++a) at[a] = node_value(x, cell.nodes[a]);
+  kernels::Edges<double, 4> edges;
   Mat3d gradient{};
-  for (std::size_t a = 1; a < 4; ++a) gradient += outer(at[a] - at[0], cell.gradients[a]);
-  const Svd3d svd = svd3(gradient);
-  const Mat3d rotation = rotation_of(svd);
+  for (std::size_t a = 1; a < 4; ++a) {
+    edges[a - 1] = node_value(x, cell.nodes[a]) - node_value(x, cell.nodes[0]);
+    gradient += outer(edges[a - 1], cell.gradients[a]);
+  }
+  const auto svd = svd3(gradient);
+  const Mat3d rotation = times_transpose(svd.u, svd.v);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Mat3d strain = rotation * cell.modes[k].strain;
-    for (std::size_t a = 0; a < 4; ++a) rows[k][a] = strain * cell.gradients[a];
-    remove_torque(at, rows[k]);
+    kernels::Edges<double, 4> row;
+    for (std::size_t a = 1; a < 4; ++a) row[a - 1] = strain * cell.gradients[a];
+    filtered::remove_torque<double>(edges, row);
+    rows[k] = {-(row[0] + row[1] + row[2]), row[0], row[1], row[2]};
   }
   return stiffness_now(material, svd.sigma).growth;
 }

@@ -192,8 +192,12 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
   definition.fixed_time_step = scene.integrator.time_step.value_or(0);
   definition.time_step = {scene.integrator.safety, scene.integrator.max_strain_increment};
   if (scene.filter)
-    definition.filter = {scene.filter->time_step, scene.filter->safety, scene.filter->selection,
-                         scene.filter->constraints, scene.filter->projection};
+    definition.filter = {.time_step = scene.filter->time_step.value_or(0),
+                         .safety = scene.filter->safety,
+                         .selection = scene.filter->selection,
+                         .most_softened = scene.filter->most_softened,
+                         .constraints = scene.filter->constraints,
+                         .projection = scene.filter->projection};
   return {std::make_unique<Simulation>(std::move(mesh), std::move(definition)), std::move(whole.bodies)};
 }
 

@@ -92,6 +92,9 @@ std::unique_ptr<ModalFilter> make_filter(const SimulationDefinition& definition,
                                          ElasticForces& elastic) {
   if (!definition.filter) return nullptr;
   auto options = *definition.filter;
+  options.implicit_damping = definition.method == IntegrationMethod::newmark;
+  options.integrator_safety = definition.time_step.safety;
+  options.fixed_time_step = definition.fixed_time_step;
   options.stability_constant = stability_constant_of(definition.method);
   if (!(options.stability_constant > 0))
     throw UserError("filter: no filter makes explicit_euler stable; it goes with newmark");
@@ -256,7 +259,7 @@ double Simulation::suggested_time_step() {
       },
       integrator_);
   double dt = time_step_.suggest(system_, limit);
-  if (filter_) dt = std::min(dt, filter_->options().time_step);
+  if (filter_) dt = std::min(dt, filter_->time_step());
   if (!time_step_.is_fresh() || !activation_rises(time_step_.horizon())) return dt;
   // The bound must hold until it is asked again: once more, as stiff as muscle will be by then.
   activate_highest(system_.time + time_step_.horizon());

@@ -40,10 +40,12 @@ TEST_P(Bench, WritesWhatItMeasures) {
   for (const char* key : {"tet_force_mps", "tet_force_damped_mps", "hex_force_mqps", "general_path_mqps",
                           "tet_muscle_mps", "tet_spline_mps", "hex_tendon_mqps", "tet_stable_neo_hookean_mps",
                           "svd_mps", "damping_mtps", "damping_matmult_mtps", "baij_matmult_mtps",
+                          "tet_filtered_neo_hookean_mps", "tet_filtered_rotated_linear_mps",
                           "naive_tet_force_mps", "multiply_add_gflops", "division_gps", "triad_gbs"})
     expect_rate(json[key]["small"], key);
   for (const char* group : {"multiple_of_naive", "share_of_ceiling"})
     EXPECT_GT(json[group]["small"]["tet_force_mps"].as<double>(), 0) << group;
+  EXPECT_GT(json["filtered_cost"]["small"]["rotated_linear"].as<double>(), 0);
   EXPECT_GT(json["multiple_of_baij"]["small"]["damping_mtps"].as<double>(), 0);
   EXPECT_GT(json["sizes"]["small"]["inverted_share"].as<double>(), 0);
 }

@@ -34,6 +34,12 @@ struct KernelRate {
   std::string ceiling;    ///< what the machine has least of: "flops", "divisions" or "bytes"
 };
 
+/// What the force of a filtered tetrahedron costs, in those of unfiltered ones of the same model.
+struct FilteredCost {
+  std::string model;
+  double of_unfiltered;
+};
+
 struct KernelSizeReport {
   std::string size;
   GlobalIndex tets = 0;
@@ -45,6 +51,7 @@ struct KernelSizeReport {
   Rate divisions;  ///< independent divisions and square roots
   Rate bytes;      ///< of a triad over as much memory as the damped tetrahedra hold
   std::vector<KernelRate> kernels;
+  std::vector<FilteredCost> filtered_costs;
 };
 
 /// Collective. Measures every kernel at one size for `seconds` each.

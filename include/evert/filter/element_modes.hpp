@@ -38,28 +38,33 @@ struct ElementModes {
 
 [[nodiscard]] ElementModes element_modes(const TetShape& shape, const TetMasses& masses, const Lame& lame);
 
-/// The linear map A of strains with E' = Aᵀ E A, where E' = S Q diag(min(1, limit/λ)) Qᵀ S is the elasticity
-/// of the filtered element: none of its eigenvalues against the same masses exceeds the limit. Rigid motions
-/// have no strain, and stay as they are.
-struct StrainFilter {
-  Mat3d axes;     ///< of the strains, as columns
-  Mat3d stretch;  ///< A on the three stretches along the axes
-  Vec3d shear;    ///< A on the shear of the pair without axis k
+/// A linear map of strains along given axes: the stretches among themselves, and each shear by a factor.
+template <class T>
+struct StrainMap {
+  Mat3<T> stretch;  ///< on the three stretches
+  Vec3<T> shear;    ///< on the shear of the pair without axis k
 
   /// A e; `strain` symmetric, along the axes.
-  [[nodiscard]] Mat3d operator()(const Mat3d& strain) const {
-    return put_together(stretch * Vec3d{strain(0, 0), strain(1, 1), strain(2, 2)}, strain);
+  [[nodiscard]] EVERT_ALWAYS_INLINE Mat3<T> operator()(const Mat3<T>& strain) const {
+    return put_together(stretch * Vec3<T>{strain(0, 0), strain(1, 1), strain(2, 2)}, strain);
   }
   /// Aᵀ s
-  [[nodiscard]] Mat3d transposed(const Mat3d& stress) const {
-    return put_together(transpose_times(stretch, Vec3d{stress(0, 0), stress(1, 1), stress(2, 2)}), stress);
+  [[nodiscard]] EVERT_ALWAYS_INLINE Mat3<T> transposed(const Mat3<T>& stress) const {
+    return put_together(transpose_times(stretch, Vec3<T>{stress(0, 0), stress(1, 1), stress(2, 2)}), stress);
   }
 
  private:
-  [[nodiscard]] Mat3d put_together(const Vec3d& on, const Mat3d& tensor) const {
-    const double yz = shear[0] * tensor(1, 2), xz = shear[1] * tensor(0, 2), xy = shear[2] * tensor(0, 1);
+  [[nodiscard]] EVERT_ALWAYS_INLINE Mat3<T> put_together(const Vec3<T>& on, const Mat3<T>& tensor) const {
+    const T yz = shear[0] * tensor(1, 2), xz = shear[1] * tensor(0, 2), xy = shear[2] * tensor(0, 1);
     return {{{{on[0], xy, xz}, {xy, on[1], yz}, {xz, yz, on[2]}}}};
   }
+};
+
+/// The linear map A of strains with E' = Aᵀ E A, where E' = S Q diag(min(1, limit/λ)) Qᵀ S is the elasticity
+/// of the filtered element: none of its eigenvalues against the same masses exceeds the limit. Rigid motions
+/// have no strain, and stay as they are.
+struct StrainFilter : StrainMap<double> {
+  Mat3d axes;  ///< of the strains, as columns
 };
 
 /// `limit` [1/s²] > 0; `lame` as given to element_modes. Of modes that are all below it A is the identity.

@@ -1,5 +1,6 @@
 #pragma once
-#include "evert/filter/filter_constraints.hpp"
+#include "evert/filter/automatic_step.hpp"
+#include "evert/filter/modal_filter_options.hpp"
 #include "evert/filter/selection.hpp"
 #include "evert/filter/shape_constraints.hpp"
 #include "evert/filter/stiff_modes.hpp"
@@ -7,30 +8,9 @@
 #include <cstdint>
 #include <vector>
 
+#include <optional>
+
 namespace evert {
-
-struct ModalFilterOptions {
-  double time_step = 0;  ///< [s] that steps may have
-  double safety =
-      1.25;  ///< [-] ≥ 1: how much larger a step the filtered body takes at rest; strain stiffens it
-  FilterSelection selection = FilterSelection::spare_mass;
-  FilterConstraints constraints = FilterConstraints::none;  ///< compliant: the integrator must take part
-  FilterProjection projection = FilterProjection::shake;    ///< of `paper`
-  double stability_constant = 2;  ///< c of the integrator: ωΔt ≤ c is stable without damping
-
-  /// (c/Δt)² that no squared frequency of the filtered body exceeds at rest [1/s²]; implicit damping only
-  /// raises c.
-  [[nodiscard]] double limit() const {
-    const double frequency = stability_constant / (safety * time_step);
-    return frequency * frequency;
-  }
-  /// What K_s is added to M with, in a step of `dt` [s], for its part of the stiffness to be as far below
-  /// what is stable as the limit of the rest: θ Δt² with θ = (safety/c)² [s²].
-  [[nodiscard]] double implicit_factor(double dt) const {
-    const double time = safety * dt / stability_constant;
-    return time * time;
-  }
-};
 
 /// What a change of topology leaves of the cells of a rank; cells keep their rank.
 struct TopologyChange {
@@ -46,7 +26,7 @@ class ModalFilter {
  public:
   /// Collective. Filters the cells of `elastic`. Throws UserError on all ranks for consistent masses, for
   /// cells other than tet4, for models with fibres, and for a step at which nothing of a region's stiffness
-  /// would be left.
+  /// would be left. An automatic step is chosen here, and anew for every change of a material.
   ModalFilter(const DistributedMesh& mesh, ElasticForces& elastic, const ModalFilterOptions& options);
 
   /// Collective. Of a body that has been cut: `mesh` and `elastic` are new, and cells away from the change
@@ -59,7 +39,13 @@ class ModalFilter {
   /// Throws UserError on all ranks when nothing of the new stiffness would be left.
   void material_changed(std::int32_t region);
 
+  /// As asked for.
   [[nodiscard]] const ModalFilterOptions& options() const { return options_; }
+  /// The step that the filter is for [s]; infinity where an automatic one does not pay and nothing is
+  /// filtered.
+  [[nodiscard]] double time_step() const { return automatic_ ? automatic_->time_step : options_.time_step; }
+  /// How an automatic step was chosen.
+  [[nodiscard]] const std::optional<AutomaticStep>& automatic() const { return automatic_; }
   /// Of this rank, entry after entry of DistributedMesh::cells.
   [[nodiscard]] const CellClamps& clamps() const { return clamps_; }
   [[nodiscard]] LocalIndex filtered_cells() const;
@@ -73,6 +59,10 @@ class ModalFilter {
   [[nodiscard]] LocalIndex looked_at() const { return looked_at_; }
 
  private:
+  /// Collective. Takes all filters off, chooses the step of a body without any, and filters it for that.
+  void choose();
+  /// Collective.
+  [[nodiscard]] bool filtered_on_any_rank() const;
   /// Collective. Selects anew, and makes the blocks of the entries that are not as the clamps `in_force` say.
   void update(const FilterProblem& problem, const ChangedNodes& changed, const CellClamps& in_force);
   [[nodiscard]] SeparateCells filtered_part(std::size_t entry, std::span<const CellClamp> clamps) const;
@@ -80,6 +70,7 @@ class ModalFilter {
   const DistributedMesh& mesh_;
   ElasticForces& elastic_;
   ModalFilterOptions options_;
+  std::optional<AutomaticStep> automatic_;
   CellClamps clamps_;
   std::vector<StiffCell> stiff_cells_;
   std::vector<ShapeConstraint> shape_constraints_;

@@ -273,9 +273,10 @@ struct IntegratorConfig {
 
 /// Elements too fast for the step are filtered.
 struct FilterConfig {
-  double time_step = 0;  ///< [s] > 0
+  std::optional<double> time_step;  ///< [s] > 0; empty: auto
   FilterSelection selection = FilterSelection::spare_mass;
-  double safety = 1.25;  ///< [-] ≥ 1
+  double safety = 1.25;         ///< [-] ≥ 1
+  double most_softened = 0.05;  ///< [-] in (0, 1], with auto
   FilterConstraints constraints = FilterConstraints::compliant;
   FilterProjection projection = FilterProjection::shake;  ///< of `paper`
 };

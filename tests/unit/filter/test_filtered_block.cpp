@@ -2,10 +2,13 @@
 // them.
 #include "evert/core/aligned.hpp"
 #include "evert/filter/filtered_block.hpp"
+#include "evert/forces/kernels/cpu_level.hpp"
 
 #include <gtest/gtest.h>
 
 #include "dense_modes.hpp"
+#include "plain_filtered.hpp"
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <string>
@@ -155,6 +158,83 @@ TEST(FilteredBlock, WithNothingToFilterIsAnOrdinaryBlock) {
       }
 }
 
+Forces of_cell(const Values& values, std::size_t c) {
+  Forces four;
+  for (std::size_t a = 0; a < 4; ++a)
+    four[a] = {values[12 * c + 3 * a], values[12 * c + 3 * a + 1], values[12 * c + 3 * a + 2]};
+  return four;
+}
+
+/// What the formulas give of a cell, and how much rounding may be magnified: R turns by ε σ1/(σ2 + σ3).
+struct Expected {
+  Forces forces;
+  double condition;
+};
+
+/// The largest difference of any cell, over the largest force of that cell and its condition.
+double worst_cell(const Values& found, const std::vector<Expected>& expected) {
+  double worst = 0;
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    const auto [forces, condition] = expected[c];
+    const auto cell = of_cell(found, c);
+    double difference = 0, size = 1;  // [N]: V E |g| is some 10 N where nothing is strained
+    for (std::size_t a = 0; a < 4; ++a) {
+      difference = std::max(difference, norm(cell[a] - forces[a]));
+      size = std::max(size, norm(forces[a]));
+    }
+    worst = std::isfinite(difference) ? std::max(worst, difference / size / condition)
+                                      : std::numeric_limits<double>::infinity();
+  }
+  return worst;
+}
+
+/// Of one model, damping and state: the packed kernels against the formulas, cell by cell.
+void expect_the_formulas(const Tets& tets, const Material& material, const Damping& damping,
+                         const State& state) {
+  const auto clamps = tets.clamps(0.02);
+  const auto block = make_filtered_block(tets.cells(), tets.rest, material, damping, clamps);
+  const auto v = random_values(tets);
+  std::vector<Expected> elastic, viscous;
+  double energy = 0;
+  std::visit(
+      [&]<class Model>(const Model& model) {
+        if constexpr (!HasFibres<Model>)
+          for (std::size_t c = 0; c < tets.count(); ++c) {
+            const auto shape = tets.shape(c);
+            const auto filter =
+                strain_filter(element_modes(shape, clamps[c].masses, lame), lame, clamps[c].limit);
+            const auto plain = plain_filtered(model, shape, filter, of_cell(state.x, c));
+            const auto& sigma = plain.deformation.sigma;
+            const double condition = 1 + sigma[0] / (sigma[1] + sigma[2]);
+            elastic.push_back({plain.forces, condition});
+            viscous.push_back({plain_damping(damping, shape, filter, plain, of_cell(v, c)), condition});
+            energy += plain.energy;
+          }
+      },
+      material);
+  const std::string label = name_of(material) + ", " + state.name;
+  // Rounding, times what flat cells and the small moments of inertia of needles magnify it by.
+  EXPECT_LE(worst_cell(forces(*block, state.x), elastic), 1e-11) << label;
+  EXPECT_NEAR(block->energy(state.x.data()), energy, 1e-12 * (std::abs(energy) + 1)) << label;
+  EXPECT_LE(worst_cell(damping_forces(*block, v), viscous), 1e-11) << label;
+}
+
+/// On every instruction set of this machine, whole batches and padded ones.
+TEST(FilteredBlock, HasTheForcesOfTheFormulas) {
+  const Tets tets(21);
+  for (const auto& level : kernels::cpu_levels()) {
+    if (!level.supported) continue;
+    setenv("EVERT_CPU_LEVEL", std::string(level.name).c_str(), 1);
+    for (const auto& material : isotropic_models())
+      for (const auto& damping : {rotated, objective, blended})
+        for (const auto& state : states(tets)) {
+          if (state.name == "line" || state.name == "point") continue;  // R is one of many
+          expect_the_formulas(tets, material, damping, state);
+        }
+  }
+  unsetenv("EVERT_CPU_LEVEL");
+}
+
 /// By differences of the forces, and as stiffness_matrices() says.
 TEST(FilteredBlock, HasTheTangentOfTheFilterAtRest) {
   const Tets tets;
@@ -287,7 +367,7 @@ TEST(FilteredBlock, StatesItsStableStep) {
   const Tets tets;
   const auto clamps = tets.clamps(0.02);
   const auto block = make_filtered_block(tets.cells(), tets.rest, NeoHookean{.lame = lame}, {}, clamps);
-  const auto& rest = states(tets)[0].x;
+  const auto rest = states(tets)[0].x;
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < tets.count(); ++c) {
     EXPECT_NEAR(block->rest_stiffness_of(static_cast<LocalIndex>(c)), clamps[c].limit,
@@ -307,7 +387,7 @@ TEST(FilteredBlock, StatesItsStableStep) {
 TEST(FilteredBlock, FollowsTheMaterial) {
   const Tets tets;
   const auto block = filtered(tets, NeoHookean{.lame = lame}, rotated, 0.02);
-  const auto& x = states(tets)[1].x;
+  const auto x = states(tets)[1].x;
   const auto before = forces(*block, x);
   block->set_material(NeoHookean{.lame = {}}, rotated);
   EXPECT_EQ(largest(forces(*block, x)), 0);
