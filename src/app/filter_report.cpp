@@ -57,8 +57,7 @@ std::vector<std::string> filter_lines(MPI_Comm comm, const ModalFilter& filter) 
       formatted("%lld of %lld tet4 are filtered for steps of %g s with a safety of %g, selection ",
                 static_cast<long long>(counts[0]), static_cast<long long>(counts[1]), filter.time_step(),
                 options.safety) +
-      std::string(name_of(options.selection)) + ", constraints " +
-      std::string(name_of(options.constraints))};
+      std::string(name_of(options.selection)) + ", constraints " + std::string(name_of(options.constraints))};
   if (automatic)
     for (const auto& candidate : automatic->candidates) lines.push_back(candidate_line(candidate, options));
   return lines;

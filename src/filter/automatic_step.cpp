@@ -27,7 +27,8 @@ constexpr std::array model_costs{ModelCost{RotatedLinear::name, 2.0},
                                  ModelCost{Spline::name, 2.3},
                                  ModelCost{StableNeoHookean::name, 2.3}};
 
-// With `compliant`, the share in the solve for a cell's strains; docs/modal-filter.md says what it was seen to be.
+// With `compliant`, the share in the solve for a cell's strains; docs/modal-filter.md says what it was seen
+// to be.
 constexpr double compliant_cost = 40;
 
 /// Collective. The step that the integrator makes of the body at rest, unfiltered.

@@ -6,9 +6,8 @@
 #include "evert/filter/stiff_modes.hpp"
 
 #include <cstdint>
-#include <vector>
-
 #include <optional>
+#include <vector>
 
 namespace evert {
 

@@ -9,7 +9,7 @@ struct ModalFilterOptions {
   double safety =
       1.25;  ///< [-] ≥ 1: how much larger a step the filtered body takes at rest; strain stiffens it
   FilterSelection selection = FilterSelection::spare_mass;
-  double most_softened = 0.05;    ///< [-] of the mass of any region, in cells filtered for a step chosen so
+  double most_softened = 0.05;  ///< [-] of the mass of any region, in cells filtered for a step chosen so
   FilterConstraints constraints = FilterConstraints::none;  ///< compliant: the integrator must take part
   FilterProjection projection = FilterProjection::shake;    ///< of `paper`
   double stability_constant = 2;  ///< c of the integrator: ωΔt ≤ c is stable without damping

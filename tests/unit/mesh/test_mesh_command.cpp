@@ -95,8 +95,8 @@ TEST_F(MeshCommand, refuses_wrong_usage) {
   const std::string box = "generate box -size 1,1,1 -edge_length 0.5 -o @b.msh ";
   expect_refused("", {"needs a command: generate, convert, quality or partition", "--help"});
   expect_refused("generat", {"there is no command 'generat'", "did you mean 'generate'?"});
-  expect_refused("generate",
-                 {"needs a shape: box, ball, rounded_box, ellipsoid,", "union, intersection or difference"});
+  expect_refused("generate", {"needs a shape: box, ball, rounded_box, ellipsoid,",
+                              "wedge_stack, cut_cube or sliver_ball"});
   expect_refused("generate torsu -o @t.msh", {"there is no shape 'torsu'", "did you mean 'torus'?"});
   expect_refused("generate ball -radius 1 -edge_length 0.5", {"evert mesh generate ball needs -o"});
   expect_refused("generate ball -edge_length 0.5 -o @b.msh",

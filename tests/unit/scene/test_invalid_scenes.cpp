@@ -135,7 +135,9 @@ const std::vector<Mistake> mistakes{
      "ellipsoid, capsule, cylinder, torus, cone, gear, figure, mesh, union, intersection or difference"},
     {"unknown_generator", "generate: torus", "generate: tours",
      "scene.yaml:11: bodies.torus.mesh.generate: 'tours' is not allowed: must be box, ball, rounded_box, "
-     "ellipsoid, capsule, cylinder, torus, cone, gear, figure, mesh, union, intersection or difference (did "
+     "ellipsoid, capsule, cylinder, torus, cone, gear, figure, mesh, union, intersection, difference, "
+     "wedge_stack, "
+     "cut_cube or sliver_ball (did "
      "you mean 'torus'?)"},
     {"unknown_field", "fields: [velocity, rank]", "fields: [velocity, ranks]",
      "scene.yaml:7: output.fields[1]: 'ranks' is not allowed: must be velocity, min_stretch, inversion or "
