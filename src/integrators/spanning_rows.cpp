@@ -28,6 +28,25 @@ KspHandle projection_ksp(MPI_Comm comm) {
   return ksp;
 }
 
+/// Where dependent rows delay pivots, MUMPS needs more memory than it has guessed: twice as much, unless
+/// -projection_mat_mumps_icntl_14 says another percentage.
+void leave_room_for_factors(KSP ksp) {
+  constexpr int of_workspace = 14, more = 100;  // ICNTL(14), per cent
+  PC pc = nullptr;
+  PetscBool cholesky = PETSC_FALSE, mumps = PETSC_FALSE;
+  MatSolverType solver = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
+  if (cholesky == PETSC_FALSE) return;
+  check(PCFactorGetMatSolverType(pc, &solver));
+  check(PetscStrcmp(solver, MATSOLVERMUMPS, &mumps));
+  if (mumps == PETSC_FALSE) return;
+  Mat factors = nullptr;
+  check(PCFactorSetUpMatSolverType(pc));
+  check(PCFactorGetMatrix(pc, &factors));
+  check(MatMumpsSetIcntl(factors, of_workspace, more));
+}
+
 PetscInt global_number(const DistributedMesh& mesh, LocalIndex node) {
   return static_cast<PetscInt>(node < mesh.owned_nodes
                                    ? mesh.first_owned + node
@@ -64,6 +83,7 @@ SpanningRows::SpanningRows(const DistributedMesh& mesh, std::span<const Nodes> n
   check(MatSetOption(product_.get(), MAT_SYMMETRIC, PETSC_TRUE));
   check(MatSetOption(product_.get(), MAT_SPD, PETSC_TRUE));
   check(KSPSetOperators(ksp_.get(), product_.get(), product_.get()));
+  leave_room_for_factors(ksp_.get());
 }
 
 void SpanningRows::fill(Mat mat, std::span<const Coefficients> values) {
