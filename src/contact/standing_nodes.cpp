@@ -1,6 +1,7 @@
 #include "evert/contact/standing_nodes.hpp"
 
 #include "evert/math/nodal.hpp"
+#include "evert/shapes/implicit_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,8 @@ namespace {
 constexpr LocalIndex chunk = 64;
 // Of the velocities involved: what rounding leaves of one that is the body's.
 constexpr double standstill = 1e-12;
+// Of what the forces change in a step: a node whose velocity away from the surface is less does not leave it.
+constexpr double not_leaving = 1e-9;
 
 /// What takes the material of a body from `x` at the beginning of the step to where it is at the end [m/s].
 Vec3d velocity_of_way(const Obstacle& obstacle, const Vec3d& x, double dt) {
@@ -61,10 +64,11 @@ void StandingNodes::find(const NodalState& state, std::span<const NodeConstraint
 void StandingNodes::look_at(LocalIndex node, const NodalState& state, std::span<const std::size_t> near,
                             double dt) {
   const auto x = node_value(state.x, node), v = node_value(state.v, node), f = node_value(state.f, node);
+  const double mass = state.masses[static_cast<std::size_t>(node)];
   normals_.clear();
   const auto first = feet_.size();
   for (const auto i : near)
-    if (stands_on(*obstacles_[i], x, v, f)) feet_.push_back({node, i});
+    if (stands_on(*obstacles_[i], x, v, dt / mass * f)) feet_.push_back({node, i});
   if (feet_.size() == first) return;
 
   const auto& body = *obstacles_[feet_[first].obstacle];
@@ -78,7 +82,7 @@ void StandingNodes::look_at(LocalIndex node, const NodalState& state, std::span<
     if (shares_[k] < 0 || norm(apart) > standstill * norm(way)) return feet_.resize(first);
     most_friction += other.friction() * shares_[k];
   }
-  const double mass = state.masses[static_cast<std::size_t>(node)], half = dt / 2;
+  const double half = dt / 2;
   const auto towards = tangent * (mass * (v - body.before().velocity_at(x)) + half * f);
   const double most = half * most_friction, size = norm(towards);
   const bool sticks = most_friction > 0 && size <= most;
@@ -88,15 +92,21 @@ void StandingNodes::look_at(LocalIndex node, const NodalState& state, std::span<
 }
 
 /// Notes the normal, if so.
-bool StandingNodes::stands_on(const Obstacle& obstacle, const Vec3d& x, const Vec3d& v, const Vec3d& f) {
+/// `impulse` of the forces in the step, over the mass [m/s].
+bool StandingNodes::stands_on(const Obstacle& obstacle, const Vec3d& x, const Vec3d& v,
+                              const Vec3d& impulse) {
   if (obstacle.body() != nullptr) return false;  // it has a mass, and goes where the nodes let it go
+  // On a curved surface friction leaves gaps, which are small: what of them is a gap would hang on rounding.
+  if (dynamic_cast<const HalfSpace*>(&obstacle.surface()) == nullptr) return false;
   const auto& body = obstacle.before();
   const auto place = body.to_body(x);
-  if (std::abs(obstacle.surface().signed_distance(place)) > on_surface * (norm(x) + norm(place)))
-    return false;
+  const double gap = std::abs(obstacle.surface().signed_distance(place));
   const auto normal = body.rotation * obstacle.surface().normal(place), velocity = body.velocity_at(x);
-  if (std::abs(dot(normal, v - velocity)) > standstill * (norm(v) + norm(velocity))) return false;
-  if (dot(normal, f) >= 0) return false;
+  const double pressed = -dot(normal, impulse);
+  if (!(pressed > 0)) return false;
+  if (gap > on_surface * (norm(x) + norm(place))) return false;
+  const double rounding = standstill * (norm(v) + norm(velocity)) + not_leaving * pressed;
+  if (std::abs(dot(normal, v - velocity)) > rounding) return false;
   normals_.push_back({normal, 0});
   return true;
 }

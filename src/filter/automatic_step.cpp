@@ -27,9 +27,9 @@ constexpr std::array model_costs{ModelCost{RotatedLinear::name, 2.0},
                                  ModelCost{Spline::name, 2.3},
                                  ModelCost{StableNeoHookean::name, 2.3}};
 
-// With `compliant`, the share in the solve for a cell's strains; docs/modal-filter.md says what it was seen
-// to be.
-constexpr double compliant_cost = 40;
+/// With `compliant`, the share in the solve for the strains of a cell that is counted, which is by
+/// `spare_mass`: `adaptive` has a fifth of them. docs/modal-filter.md has the run.
+double compliant_cost(FilterSelection selection) { return selection == FilterSelection::adaptive ? 20 : 100; }
 
 /// Collective. The step that the integrator makes of the body at rest, unfiltered.
 double own_step(const FilterProblem& problem, const ModalFilterOptions& options) {
@@ -67,7 +67,7 @@ std::vector<OfRegion> count(const FilterProblem& problem, const CellEigenvalues&
   for (const auto& entry : mesh.cells) {
     auto& region = regions[static_cast<std::size_t>(entry.region)];
     const double extra = options.constraints == FilterConstraints::compliant
-                             ? compliant_cost - 1
+                             ? compliant_cost(options.selection) - 1
                              : relative_cost(problem.elastic.properties(entry.region).material) - 1;
     for (LocalIndex i = 0; i < entry.size(); ++i, ++c) {
       const double mass = problem.cells[c].density * problem.cells[c].shape.volume;

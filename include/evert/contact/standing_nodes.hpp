@@ -15,7 +15,7 @@ struct NodalState {
   std::span<const double> f;       ///< elastic forces and weight [N]
 };
 
-/// Nodes that stand on obstacles: on the surface, not leaving it, and pressed on by the forces. The solve
+/// Nodes that stand on half-spaces: on the surface, not leaving it, and pressed on by the forces. The solve
 /// that leads to the end of the step has to know of them: it would else let them fall in, and pull what is
 /// near along.  docs/design/friction.md
 class StandingNodes {
@@ -42,7 +42,7 @@ class StandingNodes {
     std::size_t obstacle;
   };
   void look_at(LocalIndex node, const NodalState& state, std::span<const std::size_t> near, double dt);
-  bool stands_on(const Obstacle& obstacle, const Vec3d& x, const Vec3d& v, const Vec3d& f);
+  bool stands_on(const Obstacle& obstacle, const Vec3d& x, const Vec3d& v, const Vec3d& impulse);
 
   std::span<const std::unique_ptr<Obstacle>> obstacles_;
   ContactSearch search_{obstacles_};
