@@ -9,8 +9,6 @@
 namespace evert {
 namespace {
 
-// Nodes are numbered for locality: so many neighbours share one search for the bodies that are near.
-constexpr LocalIndex chunk = 64;
 // Of the velocities involved: what rounding leaves of one that is the body's.
 constexpr double standstill = 1e-12;
 // Of what the forces change in a step: a node whose velocity away from the surface is less does not leave it.
@@ -26,14 +24,20 @@ Vec3d velocity_of_way(const Obstacle& obstacle, const Vec3d& x, double dt) {
 
 }  // namespace
 
+/// Bodies with a mass are not among them: they go where the nodes let them go. Nor are curved surfaces:
+/// friction along them leaves gaps, which are small, and what of them is a gap would hang on rounding.
 StandingNodes::StandingNodes(std::span<const std::unique_ptr<Obstacle>> obstacles, std::size_t nodes)
     : obstacles_(obstacles) {
-  if (obstacles.empty()) return;
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (obstacles[i]->body() == nullptr &&
+        dynamic_cast<const HalfSpace*>(&obstacles[i]->surface()) != nullptr)
+      planes_.push_back(i);
+  if (planes_.empty()) return;
   feet_.reserve(nodes);
   constraints_.reserve(nodes);
   friction_.reserve(nodes);
-  normals_.reserve(obstacles.size());
-  shares_.reserve(obstacles.size());
+  normals_.reserve(planes_.size());
+  shares_.reserve(planes_.size());
 }
 
 void StandingNodes::clear() {
@@ -45,29 +49,21 @@ void StandingNodes::clear() {
 
 void StandingNodes::find(const NodalState& state, std::span<const NodeConstraint> prescribed, double dt) {
   clear();
-  const auto nodes = static_cast<LocalIndex>(state.masses.size());
+  if (planes_.empty()) return;
   auto fixed = prescribed.begin();
-  for (LocalIndex begin = 0; begin < nodes; begin += chunk) {
-    const auto end = std::min(begin + chunk, nodes);
-    Box3 box;
-    for (auto node = begin; node < end; ++node) box.include(node_value(state.x, node));
-    const auto near = search_.near(around(box));
-    if (near.empty()) continue;
-    for (auto node = begin; node < end; ++node) {
-      while (fixed != prescribed.end() && fixed->node < node) ++fixed;
-      if (fixed == prescribed.end() || fixed->node != node) look_at(node, state, near, dt);
-    }
+  for (LocalIndex node = 0; node < static_cast<LocalIndex>(state.masses.size()); ++node) {
+    while (fixed != prescribed.end() && fixed->node < node) ++fixed;
+    if (fixed == prescribed.end() || fixed->node != node) look_at(node, state, dt);
   }
 }
 
 /// A node that friction can stop within half of the step goes with the body altogether.
-void StandingNodes::look_at(LocalIndex node, const NodalState& state, std::span<const std::size_t> near,
-                            double dt) {
+void StandingNodes::look_at(LocalIndex node, const NodalState& state, double dt) {
   const auto x = node_value(state.x, node), v = node_value(state.v, node), f = node_value(state.f, node);
   const double mass = state.masses[static_cast<std::size_t>(node)];
   normals_.clear();
   const auto first = feet_.size();
-  for (const auto i : near)
+  for (const auto i : planes_)
     if (stands_on(*obstacles_[i], x, v, dt / mass * f)) feet_.push_back({node, i});
   if (feet_.size() == first) return;
 
@@ -91,20 +87,16 @@ void StandingNodes::look_at(LocalIndex node, const NodalState& state, std::span<
   friction_.push_back(sticks || size == 0 ? Vec3d{} : (-most / size) * towards);
 }
 
-/// Notes the normal, if so.
-/// `impulse` of the forces in the step, over the mass [m/s].
+/// Notes the normal, if so. `impulse` of the forces in the step, over the mass [m/s].
 bool StandingNodes::stands_on(const Obstacle& obstacle, const Vec3d& x, const Vec3d& v,
                               const Vec3d& impulse) {
-  if (obstacle.body() != nullptr) return false;  // it has a mass, and goes where the nodes let it go
-  // On a curved surface friction leaves gaps, which are small: what of them is a gap would hang on rounding.
-  if (dynamic_cast<const HalfSpace*>(&obstacle.surface()) == nullptr) return false;
   const auto& body = obstacle.before();
   const auto place = body.to_body(x);
   const double gap = std::abs(obstacle.surface().signed_distance(place));
+  if (gap > on_surface * (norm(x) + norm(place)) || !obstacle.is_there()) return false;
   const auto normal = body.rotation * obstacle.surface().normal(place), velocity = body.velocity_at(x);
   const double pressed = -dot(normal, impulse);
   if (!(pressed > 0)) return false;
-  if (gap > on_surface * (norm(x) + norm(place))) return false;
   const double rounding = standstill * (norm(v) + norm(velocity)) + not_leaving * pressed;
   if (std::abs(dot(normal, v - velocity)) > rounding) return false;
   normals_.push_back({normal, 0});

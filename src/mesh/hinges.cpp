@@ -1,9 +1,9 @@
 #include "hinges.hpp"
 
+#include "disjoint_sets.hpp"
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -11,20 +11,6 @@
 
 namespace evert {
 namespace {
-
-/// Sets that are joined one by one.
-class Pieces {
- public:
-  explicit Pieces(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::size_t of(std::size_t member) {
-    while (parent_[member] != member) member = parent_[member] = parent_[parent_[member]];
-    return member;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[of(a)] = of(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 using Face = std::array<GlobalIndex, 3>;
 
@@ -46,24 +32,24 @@ std::vector<std::vector<std::size_t>> hinged_pieces(std::span<const GlobalIndex>
   for (std::size_t i = 0; i < cells; ++i)
     for (const auto& face : faces_of(cell(i))) faces.emplace_back(face, i);
   std::sort(faces.begin(), faces.end());
-  Pieces by_face(cells);
+  DisjointSets by_face(cells);
   for (std::size_t k = 1; k < faces.size(); ++k)
     if (faces[k].first == faces[k - 1].first) by_face.join(faces[k].second, faces[k - 1].second);
 
   // The cell that a node was seen in first: what else has the node belongs to the same body.
-  Pieces by_node = by_face;
+  DisjointSets by_node = by_face;
   std::unordered_map<GlobalIndex, std::size_t> seen;
   for (std::size_t i = 0; i < cells; ++i)
     for (const auto node : cell(i)) by_node.join(i, seen.try_emplace(node, i).first->second);
 
   std::map<std::size_t, std::vector<std::size_t>> members;  // by piece
-  for (std::size_t i = 0; i < cells; ++i) members[by_face.of(i)].push_back(i);
+  for (std::size_t i = 0; i < cells; ++i) members[by_face.root(i)].push_back(i);
   std::vector<std::vector<std::size_t>> pieces;
   for (auto& [piece, its_cells] : members) pieces.push_back(std::move(its_cells));
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::set<std::size_t> bodies;  // of which the largest piece has been seen
-  std::erase_if(pieces, [&](const auto& piece) { return bodies.insert(by_node.of(piece.front())).second; });
+  std::erase_if(pieces, [&](const auto& piece) { return bodies.insert(by_node.root(piece.front())).second; });
   return pieces;
 }
 

@@ -41,12 +41,12 @@ class StandingNodes {
     LocalIndex node;
     std::size_t obstacle;
   };
-  void look_at(LocalIndex node, const NodalState& state, std::span<const std::size_t> near, double dt);
+  void look_at(LocalIndex node, const NodalState& state, double dt);
   bool stands_on(const Obstacle& obstacle, const Vec3d& x, const Vec3d& v, const Vec3d& impulse);
 
   std::span<const std::unique_ptr<Obstacle>> obstacles_;
-  ContactSearch search_{obstacles_};
-  std::vector<Foot> feet_;  // by node
+  std::vector<std::size_t> planes_;  // numbers of the half-spaces that move as the scene says
+  std::vector<Foot> feet_;           // by node
   std::vector<NodeConstraint> constraints_;
   std::vector<Vec3d> friction_;
   std::size_t asked_ = 0;  // feet before this one have been asked for
