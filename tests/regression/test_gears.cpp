@@ -58,8 +58,8 @@ TEST_P(Drawn, ThroughGearsItRecovers) {
   EXPECT_LT(error, 0.01);
 }
 
-/// What gears that overlap have flattened of the figure may end tangled, in another equilibrium: not among
-/// these, see examples/figure_gears/README.md.
+/// Gears that overlap are left out for the figure, which may end in another equilibrium than its shape: see
+/// examples/figure_gears/README.md.
 std::vector<Case> cases() {
   const Body cross{"hex_gears", 0.9, 3.8, {"bodies.cross.mesh.cells=[9, 9, 9]", "bodies.cross.mesh.cross=3"}};
   const Body figure{"figure_gears",
