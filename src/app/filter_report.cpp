@@ -8,18 +8,6 @@
 namespace evert {
 namespace {
 
-std::string_view name_of(FilterSelection selection) {
-  return selection == FilterSelection::paper        ? "paper"
-         : selection == FilterSelection::spare_mass ? "spare_mass"
-                                                    : "adaptive";
-}
-
-std::string_view name_of(FilterConstraints constraints) {
-  return constraints == FilterConstraints::none    ? "none"
-         : constraints == FilterConstraints::paper ? "paper"
-                                                   : "compliant";
-}
-
 std::string candidate_line(const FilterCandidate& candidate, const ModalFilterOptions& options) {
   const auto step = formatted("  %g s, %.3g times the body's own: ", candidate.time_step, candidate.multiple);
   if (!candidate.within_reach) return step + "every element of a material would be softened";

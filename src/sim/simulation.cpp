@@ -5,6 +5,7 @@
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
 
+#include "motion.hpp"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -109,41 +110,6 @@ std::unique_ptr<ImplicitStrains> make_implicit_strains(const DistributedMesh& me
                                                        const ModalFilter* filter) {
   if (filter == nullptr || filter->options().constraints != FilterConstraints::compliant) return nullptr;
   return std::make_unique<ImplicitStrains>(mesh, elastic, *filter);
-}
-
-/// What moves, this rank's share.
-struct Motion {
-  double kinetic_energy = 0;
-  Vec3d momentum{}, angular_momentum{};
-};
-
-Motion motion_of_lumped(const System& system) {
-  Motion motion;
-  const auto mass = system.masses();
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    const auto x = node_value(system.x.owned(), static_cast<std::ptrdiff_t>(i));
-    const auto v = node_value(system.v.owned(), static_cast<std::ptrdiff_t>(i));
-    motion.kinetic_energy += 0.5 * mass[i] * dot(v, v);
-    motion.momentum += mass[i] * v;
-    motion.angular_momentum += mass[i] * cross(x, v);
-  }
-  return motion;
-}
-
-/// Collective.
-Motion motion_of_consistent(const System& system) {
-  NodeField velocities(system.mesh), momenta(system.mesh);
-  std::ranges::copy(system.v.owned(), velocities.owned().begin());
-  velocities.touched();
-  system.elastic.add_momentum(velocities, momenta);
-  Motion motion;
-  for (LocalIndex node = 0; node < system.mesh.owned_nodes; ++node) {
-    const auto momentum = node_value(momenta.owned(), node);
-    motion.kinetic_energy += 0.5 * dot(node_value(system.v.owned(), node), momentum);
-    motion.momentum += momentum;
-    motion.angular_momentum += cross(node_value(system.x.owned(), node), momentum);
-  }
-  return motion;
 }
 
 std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t axis) {
@@ -316,8 +282,7 @@ GlobalIndex Simulation::inverted_points() const {
 }
 
 Measurements Simulation::measure() const {
-  auto [kinetic, momentum, angular] =
-      elastic_.consistent_mass() == nullptr ? motion_of_lumped(system_) : motion_of_consistent(system_);
+  auto [kinetic, momentum, angular] = motion_of(system_);
   const auto mass = elastic_.mass_row_sums();
   double potential = 0;
   for (std::size_t i = 0; i < mass.size(); ++i)

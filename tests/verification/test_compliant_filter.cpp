@@ -42,12 +42,6 @@ constexpr std::array cases{Case{"wedge_stack", 0.05, 0.7e-3, paper, 0.04, true, 
 
 constexpr Lame reference_lame = Lame::from_young_poisson(1e4, 0.3);
 
-std::string name_of(FilterConstraints constraints) {
-  return constraints == FilterConstraints::none    ? "none"
-         : constraints == FilterConstraints::paper ? "paper"
-                                                   : "compliant";
-}
-
 ElasticProperties properties_of(const Case& of, const Material& material) {
   return {of.density, material, {}};
 }
@@ -222,6 +216,13 @@ std::vector<double> first_frequencies(const Body& body, double highest) {
   return frequencies;
 }
 
+double largest_error(const std::vector<double>& found, const std::vector<double>& exact) {
+  double error = found.size() == exact.size() ? 0 : 1e300;
+  for (std::size_t i = 0; i < std::min(found.size(), exact.size()); ++i)
+    error = std::max(error, std::abs(found[i] / exact[i] - 1));
+  return error;
+}
+
 class OnMesh : public testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
@@ -248,24 +249,21 @@ TEST_P(OnMesh, KeepsTheFirstEightFrequencies) {
     // Of small bodies only, all eigenvalues of which are computed: Lanczos loses its way among stiff springs.
     if (constraints == FilterConstraints::paper && !GetParam().shows_paper) continue;
     const auto found = first_frequencies(Body(mesh, GetParam(), constraints), limit);
-    ASSERT_EQ(found.size(), 8U);
-    double error = 0;
-    for (std::size_t i = 0; i < 8; ++i) error = std::max(error, std::abs(found[i] / exact[i] - 1));
+    const double error = largest_error(found, exact);
     if (constraints == FilterConstraints::compliant) {
       EXPECT_LE(error, GetParam().largest_error);
       const double of_first = std::abs(found[0] / exact[0] - 1);
       EXPECT_LE(of_first, 0.02);
       tell("error of the first frequency, constraints compliant", "0", of_first, "0.02");
     }
-    tell("largest error of the first 8 frequencies, constraints " + name_of(constraints), "0", error,
+    tell(std::string("largest error of the first 8 frequencies, constraints ") + name_of(constraints), "0",
+         error,
          constraints == FilterConstraints::compliant ? std::to_string(GetParam().largest_error) : "reported");
   }
   auto softened = GetParam();
   softened.selection = adaptive;
-  const auto found = first_frequencies(Body(mesh, softened, FilterConstraints::none), limit);
-  ASSERT_EQ(found.size(), 8U);
-  double error = 0;
-  for (std::size_t i = 0; i < 8; ++i) error = std::max(error, std::abs(found[i] / exact[i] - 1));
+  const double error =
+      largest_error(first_frequencies(Body(mesh, softened, FilterConstraints::none), limit), exact);
   EXPECT_LE(error, softened.softened_error);
   tell("largest error of the first 8 frequencies, filtered by adaptive, constraints none", "0", error,
        softened.softened_error == reported ? "reported" : std::to_string(softened.softened_error));

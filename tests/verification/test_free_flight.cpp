@@ -1,8 +1,8 @@
 // An elastic body without obstacles: what Newmark's scheme must conserve, and its order.
 #include <gtest/gtest.h>
 
+#include "tests/support/free_flight.hpp"
 #include "tests/support/petsc_options.hpp"
-#include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
 #include <cmath>
@@ -10,22 +10,8 @@
 namespace evert {
 namespace {
 
-const std::string spinning_ball = R"(
-name: free flight
-end_time: 1
-bodies:
-  ball:
-    mesh: {generate: ball, radius: 0.5, edge_length: 0.25}
-    density: 1000
-    velocity: [0.3, -0.2, 0.1]
-    spin: [1.0, 2.0, -1.5]
-    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.3}
-)";
-
-/// Half of the undamped bound: `auto` with safety 1 suggests the bound itself, strain limits aside.
-double half_stable_step(Simulation& simulation) {
-  return 0.5 * simulation.elastic().stable_step(simulation.positions()).undamped;
-}
+using test::half_stable_step;
+using test::spinning_ball;
 
 class ElasticModels : public testing::TestWithParam<const char*> {
  protected:

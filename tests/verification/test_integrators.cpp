@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/free_flight.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
 #include <cmath>
@@ -12,23 +12,8 @@
 namespace evert {
 namespace {
 
-const std::string spinning_ball = R"(
-name: free flight
-end_time: 1
-bodies:
-  ball:
-    mesh: {generate: ball, radius: 0.5, edge_length: 0.25}
-    density: 1000
-    velocity: [0.3, -0.2, 0.1]
-    spin: [1.0, 2.0, -1.5]
-    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.3}
-)";
-
-double half_stable_step(Simulation& simulation) {
-  double step = 0.5 * simulation.elastic().stable_step(simulation.positions()).undamped;
-  MPI_Allreduce(MPI_IN_PLACE, &step, 1, MPI_DOUBLE, MPI_MIN, simulation.mesh().comm);
-  return step;
-}
+using test::half_stable_step;
+using test::spinning_ball;
 
 struct Scheme {
   const char* method;

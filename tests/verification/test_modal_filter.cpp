@@ -39,10 +39,6 @@ constexpr std::array motions{Motion{"wedge_stack", 0.05, 0.7e-3, paper, 0.002},
                              Motion{"ball404", 1000, 7.5e-3, spare_mass, 0.004},
                              Motion{"ball404", 1000, 7.5e-3, adaptive, 0.004}};
 
-std::string name_of(FilterSelection selection) {
-  return selection == paper ? "paper" : selection == spare_mass ? "spare_mass" : "adaptive";
-}
-
 constexpr Lame reference_lame = Lame::from_young_poisson(1e4, 0.3);
 
 /// Collective. The largest |σ − 1| of any element.

@@ -8,6 +8,11 @@ enum class FilterConstraints {
   paper,      ///< short edges and heights keep their lengths.  paper B, section 5
   compliant,  ///< they keep all of their forces; what the filter would take off is taken implicitly
 };
+[[nodiscard]] constexpr const char* name_of(FilterConstraints constraints) {
+  return constraints == FilterConstraints::none    ? "none"
+         : constraints == FilterConstraints::paper ? "paper"
+                                                   : "compliant";
+}
 
 /// How the lengths of `paper` are kept.
 enum class FilterProjection {

@@ -16,6 +16,11 @@ enum class FilterSelection {
   adaptive,    ///< cells that are too fast against all the mass of their nodes, then those that carry the
                ///< energy of what is still too fast: the fewest, from the whole body
 };
+[[nodiscard]] constexpr const char* name_of(FilterSelection selection) {
+  return selection == FilterSelection::paper        ? "paper"
+         : selection == FilterSelection::spare_mass ? "spare_mass"
+                                                    : "adaptive";
+}
 
 /// A tetrahedron that may have to be filtered.
 struct FilterCell {

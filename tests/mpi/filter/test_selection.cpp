@@ -15,10 +15,6 @@ namespace {
 using enum FilterSelection;
 constexpr std::array selections{paper, spare_mass, adaptive};
 
-std::string name_of(FilterSelection selection) {
-  return selection == paper ? "paper" : selection == spare_mass ? "spare_mass" : "adaptive";
-}
-
 class OnMesh : public testing::TestWithParam<ReferenceMesh> {
  protected:
   void SetUp() override {
