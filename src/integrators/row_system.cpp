@@ -1,12 +1,12 @@
 #include "evert/integrators/row_system.hpp"
 
+#include "evert/math/disjoint_sets.hpp"
 #include "evert/math/nodal.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace evert {
@@ -23,22 +23,6 @@ void add_ghosts(const Halo& halo, NodeField& field) {
   halo.end_add(field);
   field.touched();
 }
-
-/// Sets of nodes that rows connect.
-class Clusters {
- public:
-  explicit Clusters(std::size_t nodes) : parent_(nodes) { std::iota(parent_.begin(), parent_.end(), 0); }
-  LocalIndex root(LocalIndex node) {
-    auto& parent = parent_[static_cast<std::size_t>(node)];
-    while (parent != parent_[static_cast<std::size_t>(parent)])
-      parent = parent_[static_cast<std::size_t>(parent)];
-    return parent;
-  }
-  void join(LocalIndex a, LocalIndex b) { parent_[static_cast<std::size_t>(root(a))] = root(b); }
-
- private:
-  std::vector<LocalIndex> parent_;
-};
 
 }  // namespace
 
@@ -82,17 +66,16 @@ void RowSystem::find_spanning_rows() {
     add_ghosts(halo_, scratch_);
     update_ghosts(halo_, scratch_);
   }
-  Clusters clusters(static_cast<std::size_t>(mesh_.local_nodes()));
+  DisjointSets clusters(static_cast<std::size_t>(mesh_.local_nodes()));
+  const auto cluster_of = [&](LocalIndex node) { return clusters.root(static_cast<std::size_t>(node)); };
   for (const auto& row : nodes_)
     for (std::size_t a = 1; a < 4; ++a)
-      if (row[a] >= 0) clusters.join(row[0], row[a]);
+      if (row[a] >= 0) clusters.join(static_cast<std::size_t>(row[0]), static_cast<std::size_t>(row[a]));
   std::vector<bool> spans(static_cast<std::size_t>(mesh_.local_nodes()));
   for (const LocalIndex node : used_)
-    if (in_use[3 * static_cast<std::size_t>(node)] > 1.5)
-      spans[static_cast<std::size_t>(clusters.root(node))] = true;
+    if (in_use[3 * static_cast<std::size_t>(node)] > 1.5) spans[cluster_of(node)] = true;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
-    (spans[static_cast<std::size_t>(clusters.root(nodes_[k][0]))] ? spanning : inside_)
-        .push_back(static_cast<std::int32_t>(k));
+    (spans[cluster_of(nodes_[k][0])] ? spanning : inside_).push_back(static_cast<std::int32_t>(k));
   spanning_count_ = static_cast<GlobalIndex>(spanning.size());
   MPI_Allreduce(MPI_IN_PLACE, &spanning_count_, 1, MPI_INT64_T, MPI_SUM, mesh_.comm);
   if (spanning_count_ > 0)

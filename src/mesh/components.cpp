@@ -1,6 +1,6 @@
 #include "components.hpp"
 
-#include "disjoint_sets.hpp"
+#include "evert/math/disjoint_sets.hpp"
 
 namespace evert {
 

@@ -1,6 +1,7 @@
 #include "hinges.hpp"
 
-#include "disjoint_sets.hpp"
+#include "evert/math/disjoint_sets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <map>
