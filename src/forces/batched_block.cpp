@@ -71,6 +71,12 @@ BatchedBlock::BatchedBlock(const ElementView& element, const ElasticCells& cells
     if (cell >= 0) lane_of_cell_[static_cast<std::size_t>(cell)] = static_cast<LocalIndex>(slot);
   }
   if (kernels.fibres) set_fibres(element_block_, cells.fibres, rest_positions, kernels.precision);
+  if (cells.plasticity) {
+    EVERT_ASSERT(kernels.flows, "plasticity of fibres or in mixed precision");
+    plastic_ = std::make_unique<PlasticCells>(*cells.plasticity, element_block_);
+    mass_shares_ = own_mass_shares(element_block_, density_);
+    settled_ = rest_stiffness_;
+  }
   point_kernels_at_memory();
 }
 
@@ -78,7 +84,8 @@ void BatchedBlock::point_kernels_at_memory() {
   arrays_ = {element_block_.nodes.data(),    element_block_.shapes.data(),
              element_block_.volumes.data(),  element_block_.cell_of_lane.data(),
              rest_stiffness_.largest.data(), rest_stiffness_.spin.data(),
-             damping_state_.data(),          element_block_.fibres.data()};
+             damping_state_.data(),          element_block_.fibres.data(),
+             plastic_ != nullptr ? plastic_->arrays() : nullptr};
 }
 
 void BatchedBlock::update(const double* x, double* f, BatchRange batches) {
@@ -161,7 +168,29 @@ LocalIndex BatchedBlock::inverted_points(const double* x) const {
   return kernels_.inverted_points(arrays_, x, all());
 }
 
+void BatchedBlock::follow_flow() const {
+  if (plastic_ == nullptr) return;
+  constexpr float much = 0.01F;  // the step then is a percent shorter than it need be, if Poisson's ratio is small
+  const Lame lame = lame_of(material_);
+  const auto lanes = static_cast<std::size_t>(element_block_.lanes);
+  for (LocalIndex b = 0; b < element_block_.batches(); ++b) {
+    const float drift = plastic_->drift()[static_cast<std::size_t>(b)];
+    if (drift == 0) continue;
+    const bool settle = drift > much;
+    if (settle) {
+      update_rest_stiffness(element_block_, mass_shares_, lame, plastic_.get(), {b, b + 1}, settled_);
+      plastic_->settle(b);
+    }
+    const auto growth = static_cast<float>(settle ? 1 : stiffness_growth(drift, lame));
+    for (auto slot = static_cast<std::size_t>(b) * lanes; slot < static_cast<std::size_t>(b + 1) * lanes; ++slot) {
+      rest_stiffness_.largest[slot] = growth * settled_.largest[slot];
+      rest_stiffness_.spin[slot] = growth * settled_.spin[slot];
+    }
+  }
+}
+
 StableStep BatchedBlock::stable_step(const double* x) const {
+  follow_flow();
   return kernels_.stable_step(arrays_, material_, damping_, x, all());
 }
 
@@ -178,18 +207,25 @@ void BatchedBlock::set_material(const Material& material, const Damping& damping
 }
 
 double BatchedBlock::rest_stiffness_of(LocalIndex cell) const {
+  follow_flow();
   return rest_stiffness_.largest[static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)])];
 }
 
 void BatchedBlock::set_mass_shares(std::span<const double> shares) {
-  rest_stiffness_ = rest_stiffness(element_block_, shares, lame_of(material_));
+  rest_stiffness_ = rest_stiffness(element_block_, shares, lame_of(material_), plastic_.get());
+  if (plastic_ != nullptr) {
+    mass_shares_.assign(shares.begin(), shares.end());
+    settled_ = rest_stiffness_;
+    for (LocalIndex b = 0; b < element_block_.batches(); ++b) plastic_->settle(b);
+  }
   point_kernels_at_memory();
 }
 
 std::size_t BatchedBlock::memory() const {
   return bytes(element_block_.nodes) + element_block_.shapes.bytes() + element_block_.volumes.bytes() +
          element_block_.fibres.bytes() + bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) +
-         bytes(rest_stiffness_.spin) + damping_state_.bytes() + bytes(lane_of_cell_);
+         bytes(rest_stiffness_.spin) + damping_state_.bytes() + bytes(lane_of_cell_) + bytes(mass_shares_) +
+         bytes(settled_.largest) + bytes(settled_.spin) + (plastic_ != nullptr ? plastic_->memory() : 0);
 }
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElementView& element, const ElasticCells& cells,

@@ -3,8 +3,10 @@
 #include "evert/elements/element_block.hpp"
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/elastic_kernels.hpp"
+#include "evert/forces/plastic_cells.hpp"
 
 #include "rest_stiffness.hpp"
+#include <memory>
 #include <vector>
 
 namespace evert {
@@ -40,10 +42,13 @@ class BatchedBlock final : public ElasticBlock {
   void set_mass_shares(std::span<const double> shares) override;
   void set_material(const Material& material, const Damping& damping) override;
   void set_activation(double activation) override { evert::set_activation(material_, activation); }
+  [[nodiscard]] PlasticCells* plastic() override { return plastic_.get(); }
   [[nodiscard]] std::size_t memory() const override;
 
  private:
   void point_kernels_at_memory();
+  /// Brings the rest stiffness of what has flown up to date.
+  void follow_flow() const;
   [[nodiscard]] Vec3d fibre_at(std::size_t slot, std::size_t q) const;
   [[nodiscard]] BatchRange all() const { return {0, element_block_.batches()}; }
 
@@ -52,7 +57,10 @@ class BatchedBlock final : public ElasticBlock {
   Damping damping_;
   double density_;
   kernels::ElasticKernels kernels_;
-  RestStiffness rest_stiffness_;
+  mutable RestStiffness rest_stiffness_;  // brought up to date when asked for
+  std::unique_ptr<PlasticCells> plastic_;          // where something flows
+  mutable RestStiffness settled_;                  // rest_stiffness_ where plastic_->drift() was 0
+  std::vector<double> mass_shares_;                // where something flows
   NumberArray damping_state_;
   kernels::BlockArrays arrays_{};         // into the vectors above
   std::vector<LocalIndex> lane_of_cell_;  // inverse of ElementBlock::cell_of_lane

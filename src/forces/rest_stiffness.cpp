@@ -1,5 +1,6 @@
 #include "rest_stiffness.hpp"
 
+#include "evert/forces/plastic_cells.hpp"
 #include "evert/math/eigen_symmetric3.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -56,13 +57,22 @@ void add_stiffness(const RestPoint& point, std::span<const double> masses, const
   }
 }
 
+/// As points of one cell have it in common, which F_p as it is kept turns each in its own way.
+RestPoint common_point(const ElementBlock& block, const PlasticCells* flown, std::size_t slot, std::size_t q) {
+  RestPoint point = rest_point(block, slot, q);
+  if (flown == nullptr) return point;
+  const Mat3d rotation = flown->rotation(slot, q);
+  for (Vec3d& gradient : point.gradients) gradient = transpose_times(rotation, gradient);
+  return point;
+}
+
 /// Any number of points: the dense generalised eigenproblem of the cell.
-CellStiffness dense_stiffness(const ElementBlock& block, std::size_t slot, std::span<const double> masses,
-                              const Lame& lame) {
+CellStiffness dense_stiffness(const ElementBlock& block, const PlasticCells* flown, std::size_t slot,
+                              std::span<const double> masses, const Lame& lame) {
   const auto unknowns = static_cast<int>(3 * masses.size());
   CellMatrix stiffness = CellMatrix::Zero(unknowns, unknowns);
   for (std::size_t q = 0; q < block.element.points(); ++q)
-    add_stiffness(rest_point(block, slot, q), masses, lame, stiffness);
+    add_stiffness(common_point(block, flown, slot, q), masses, lame, stiffness);
   using Solver = Eigen::SelfAdjointEigenSolver<CellMatrix>;
   const double largest = Solver(stiffness, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
   return {largest, largest};
@@ -76,22 +86,34 @@ float rounded_up(double x) {
 
 }  // namespace
 
-RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares,
-                             const Lame& lame) {
+RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares, const Lame& lame,
+                             const PlasticCells* flown) {
   const auto slots = block.cell_of_lane.size();
-  const std::size_t nodes = block.element.nodes();
   RestStiffness stiffness{AlignedVector<float>(slots, 0.0F), AlignedVector<float>(slots, 0.0F)};
-  for (std::size_t slot = 0; slot < slots; ++slot) {
+  update_rest_stiffness(block, mass_shares, lame, flown, {0, block.batches()}, stiffness);
+  return stiffness;
+}
+
+void update_rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares, const Lame& lame,
+                           const PlasticCells* flown, BatchRange batches, RestStiffness& stiffness) {
+  const std::size_t nodes = block.element.nodes();
+  const auto lanes = static_cast<std::size_t>(block.lanes);
+  for (auto slot = static_cast<std::size_t>(batches.begin) * lanes;
+       slot < static_cast<std::size_t>(batches.end) * lanes; ++slot) {
     if (block.cell_of_lane[slot] < 0) continue;
     const auto masses =
         mass_shares.subspan(nodes * static_cast<std::size_t>(block.cell_of_lane[slot]), nodes);
     const CellStiffness of_cell = block.element.points() == 1
                                       ? one_point_stiffness(rest_point(block, slot, 0), masses, lame)
-                                      : dense_stiffness(block, slot, masses, lame);
+                                      : dense_stiffness(block, flown, slot, masses, lame);
     stiffness.largest[slot] = rounded_up(of_cell.largest);
     stiffness.spin[slot] = rounded_up(of_cell.spin);
   }
-  return stiffness;
+}
+
+double stiffness_growth(double drift, const Lame& lame) {
+  const double s = std::expm1(drift);
+  return (1 + s) * (1 + s) * (1 + s * std::max(lame.lambda, 0.0) / (2 * lame.mu));
 }
 
 std::vector<double> own_mass_shares(const ElementBlock& block, double density) {

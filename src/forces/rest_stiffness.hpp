@@ -9,6 +9,8 @@
 /// What the stable step of an element starts from.  PHYSICS 9, eq. (9)
 namespace evert {
 
+class PlasticCells;
+
 /// What the stable step of the cells starts from, per lane of a block, 0 in padding, rounded up to float so
 /// that a bound stays one [1/s²].
 struct RestStiffness {
@@ -28,7 +30,15 @@ struct RestStiffness {
 /// λ_spin is what resists a spin when strain is held by damping (stable_steps in measure_kernels.hpp): of a
 /// flat cell, the large eigenvalue of Γ does not count. Cells of several points are not looked into: λ_e.
 [[nodiscard]] RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares,
-                                           const Lame& lame);
+                                           const Lame& lame, const PlasticCells* flown = nullptr);
+/// The same of some batches anew. `flown`: what has flown in the block, if anything can.
+void update_rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares, const Lame& lame,
+                           const PlasticCells* flown, BatchRange batches, RestStiffness& stiffness);
+
+/// λ_e grows at most by this factor when log F_p goes a way of length `drift`: with F_p⁻¹ then F_p⁻¹ (I + E), ‖E‖ ≤
+/// s = e^drift − 1, a gradient G becomes G (I + E), and 2μ‖G‖² + λ(tr G)² at most (1 + s)² (1 + sλ/2μ) times as
+/// large.
+[[nodiscard]] double stiffness_growth(double drift, const Lame& lame);
 
 /// The shares that a cell contributed itself, ∫ ρ N_a dX: eq. (9) as printed.
 [[nodiscard]] std::vector<double> own_mass_shares(const ElementBlock& block, double density);

@@ -2,16 +2,20 @@
 #include "evert/elements/element_block.hpp"
 #include "evert/materials/damping.hpp"
 #include "evert/materials/material.hpp"
+#include "evert/materials/plasticity.hpp"
 
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 
 /// Elastic and damping forces of one block of elements. Knows neither MPI nor PETSc: plain arrays of local
 /// nodal values, x y z per node, one double of slack behind the last node.
 namespace evert {
+
+class PlasticCells;
 
 /// What bounds the stable time step of a block. With M*_e a cell's shares of the masses of its nodes, λ is
 /// the largest eigenvalue of K_e against M*_e (PHYSICS 9); a step is stable when 1 + Δt/2·(damping) − Δt²/4·λ
@@ -107,6 +111,9 @@ class ElasticBlock {
   /// Sets the activation of muscle, in [0, 1]; of other models nothing changes. Call update afterwards. Does
   /// not allocate.
   virtual void set_activation(double activation) = 0;
+  /// What its points remember of their flow; null where nothing flows. An update lets them flow.
+  [[nodiscard]] virtual PlasticCells* plastic() { return nullptr; }
+  [[nodiscard]] const PlasticCells* plastic() const { return const_cast<ElasticBlock*>(this)->plastic(); }
   /// Bytes of element data held.
   [[nodiscard]] virtual std::size_t memory() const = 0;
 };
@@ -119,6 +126,7 @@ struct ElasticCells {
   double density = 0;                 ///< [kg/m^3]
   std::span<const Vec3d>
       fibres{};  ///< per cell, for models with fibres: their direction at rest, of length 1
+  std::optional<Plasticity> plasticity{};  ///< of isotropic models in double; empty: nothing flows
 };
 
 /// In mixed precision positions and forces stay double; rest data, damping state and all arithmetic between

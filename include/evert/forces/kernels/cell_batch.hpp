@@ -2,11 +2,22 @@
 #include "evert/elements/element_block.hpp"
 #include "evert/forces/kernels/shape_gradients.hpp"
 #include "evert/materials/material.hpp"
+#include "evert/materials/plasticity.hpp"
 
 #include <cstddef>
 #include <variant>
 
 namespace evert::kernels {
+
+/// Of a block that flows; what its update changes.
+struct PlasticArrays {
+  Plasticity law;
+  double dt = 0;                        ///< since the last update [s]
+  const double* rest_shapes = nullptr;  ///< BlockArrays::shapes without flow
+  double* shapes = nullptr;             ///< BlockArrays::shapes: those of F_p⁻¹
+  double* state = nullptr;              ///< [batch][point] of plastic_numbers [lane], see plastic_flow.hpp
+  float* drift = nullptr;               ///< [batch] Σ of the largest Δα of its points since it was last cleared
+};
 
 /// The arrays of an ElementBlock and what goes with it, as the kernels see them. `void` stands for the scalar
 /// of the kernels that the block was made for, double or float.
@@ -19,6 +30,7 @@ struct BlockArrays {
   const float* spin_stiffness;     ///< the same for damped spin, see stable_steps [1/s²]
   void* damping_state;             ///< see damping_kernels.hpp
   const void* fibres;              ///< [batch][point][3][lane]; null where the model has none
+  const PlasticArrays* plastic;    ///< null where nothing flows
 };
 
 /// The model that the kernel was chosen by.

@@ -2,6 +2,7 @@
 #include "evert/forces/kernels/damping_kernels.hpp"
 #include "evert/forces/kernels/fibre_direction.hpp"
 #include "evert/forces/kernels/general_stress.hpp"
+#include "evert/forces/kernels/plastic_flow.hpp"
 #include "evert/forces/kernels/point_run.hpp"
 #include "evert/materials/material.hpp"
 
@@ -74,12 +75,15 @@ EVERT_STAGE void nodal_force_stage(const BlockArrays& block, BatchRange batches,
   add_nodal_forces<T, element>(block, batches, f, [&](std::size_t i) { return framed.stress[i]; });
 }
 
-/// Elastic forces of any model; keeps what the damping needs.
+/// Elastic forces of any model, once what yields has flown; keeps what the damping needs.
 template <Real T, const auto& element, DampingModel damping, class Model>
 EVERT_ALWAYS_INLINE void add_forces(const Model& model, const BlockArrays& block, const double* x, double* f,
                                     BatchRange batches) {
   for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
     diagonalize(run, points);
+    if constexpr (MayFlow<T, Model>) {
+      if (block.plastic != nullptr) flow<T, element>(model, *block.plastic, piece, run, points);
+    }
     if constexpr (NeedsFrames<Model>) {
       FramedRun<T> framed;
       general_stress<T, element>(model, block, piece, run, points, framed);

@@ -19,6 +19,7 @@ constexpr ElasticKernels kernels_of() {
       .damping_numbers = static_cast<int>(damping_numbers<element, damping>),
       .rotated_gradients = keeps_rotated_gradients<element, damping>,
       .fibres = HasFibres<Model>,
+      .flows = MayFlow<T, Model>,
       .update = update<T, element, Model, damping>,
       .energy = energy<T, element, Model>,
       .min_stretch = min_stretch<T, element>,

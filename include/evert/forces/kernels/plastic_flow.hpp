@@ -1,0 +1,233 @@
+#pragma once
+#include "evert/forces/kernels/measure_kernels.hpp"
+#include "evert/forces/kernels/point_run.hpp"
+#include "evert/materials/plasticity.hpp"
+#include "evert/math/lower_triangle.hpp"
+
+#include <type_traits>
+
+/// Plastic flow.  paper A, section 6.3; PHYSICS 6
+///
+/// What a flowing point changes is its shape data, and nothing else: with F_e = F F_p⁻¹ = Σ x_a ⊗ F_p⁻ᵀ ∂N_a/∂X
+/// all kernels compute F_e where they would compute F, and the forces Σ P_e F_p⁻ᵀ ∂N_a/∂X where they would
+/// compute those of P. A block without flow pays nothing, one that does not flow at present a comparison.
+///
+/// Of F_p = Q L only the lower triangle L is kept. The rotation Q between is of no consequence to isotropic
+/// materials, and shape data that are triangular stay so.
+namespace evert::kernels {
+
+/// Numbers kept per point and lane: L row after row, α, and the work that has gone into flow [J/m³].
+inline constexpr std::size_t plastic_numbers = 8;
+
+/// Models of which points may flow; plastic strain is kept in double.
+template <class T, class Model>
+concept MayFlow = std::is_same_v<scalar_t<T>, double> && !HasFibres<Model> && !NeedsFrames<Model>;
+
+/// The state of one point.
+template <Real T>
+struct PlasticPoint {
+  double* numbers;
+
+  template <const auto& element>
+  EVERT_ALWAYS_INLINE static PlasticPoint at(const PlasticArrays& plastic, const PointPlace& place) {
+    const std::size_t point = static_cast<std::size_t>(place.batch) * element.points + place.q;
+    return {plastic.state + point * plastic_numbers * lanes_v<T>};
+  }
+  [[nodiscard]] EVERT_ALWAYS_INLINE T number(std::size_t i) const { return load<T>(numbers + i * lanes_v<T>); }
+  EVERT_ALWAYS_INLINE void set(std::size_t i, const T& value) const { store(value, numbers + i * lanes_v<T>); }
+
+  [[nodiscard]] EVERT_ALWAYS_INLINE LowerTriangle<T> deformation() const {
+    return {number(0), number(1), number(2), number(3), number(4), number(5)};
+  }
+  EVERT_ALWAYS_INLINE void set_deformation(const LowerTriangle<T>& l) const {
+    const std::array<T, 6> entries{l.l00, l.l10, l.l11, l.l20, l.l21, l.l22};
+    for (std::size_t i = 0; i < entries.size(); ++i) set(i, entries[i]);
+  }
+  [[nodiscard]] EVERT_ALWAYS_INLINE T alpha() const { return number(6); }
+  EVERT_ALWAYS_INLINE void set_alpha(const T& alpha) const { set(6, alpha); }
+  [[nodiscard]] EVERT_ALWAYS_INLINE T work() const { return number(7); }
+  EVERT_ALWAYS_INLINE void set_work(const T& work) const { set(7, work); }
+};
+
+/// What a run of flowing points holds besides PointRun.
+template <Real T>
+struct FlowRun {
+  template <class Value>
+  using PerPoint = typename PointRun<T>::template PerPoint<Value>;
+
+  PerPoint<Vec3<T>> log_growth;
+  PerPoint<T> amount;             ///< Δα; 0 where nothing flows
+  PerPoint<T> energy;             ///< ψ of the trial state
+  PerPoint<Mat3<T>> trial;        ///< F_e before
+  PerPoint<LowerTriangle<T>> deformation;  ///< F_p after
+};
+
+/// False where every stretch is so near to 1 that none can yield: |log σ| ≤ γ/√3 for all three is implied by
+/// 1/(1 + γ/√3) ≤ σ ≤ 1 + γ/√3.
+template <Real T, const auto& element>
+EVERT_STAGE bool may_yield(const PlasticArrays& plastic, BatchRange batches, const PointRun<T>& run,
+                           std::size_t points) {
+  bool may = false;
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
+    const T bound = T(1.0) + T(0.577) * (T(plastic.law.yield) + T(plastic.law.hardening) * point.alpha());
+    const Vec3<T> sigma = principal_stretches(run.plane[i]);
+    const T largest = max(max(sigma[0], sigma[1]), sigma[2]);
+    const T smallest = min(min(sigma[0], sigma[1]), sigma[2]);
+    may = may || !all(largest <= bound && smallest * bound >= T(1.0));
+  }
+  return may;
+}
+
+/// What flows at each point; false where nothing does.
+template <Real T, const auto& element>
+EVERT_STAGE bool yield_stage(const PlasticArrays& plastic, BatchRange batches, const PointRun<T>& run,
+                             std::size_t points, FlowRun<T>& flowing) {
+  bool flows = false;
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
+    const auto flow =
+        plastic_flow(plastic.law, principal_stretches(run.plane[i]), point.alpha(), plastic.dt);
+    flowing.log_growth[i] = flow.log_growth;
+    flowing.amount[i] = flow.amount;
+    flows = flows || any(flow.amount > T(0.0));
+  }
+  return flows;
+}
+
+template <Real T>
+EVERT_ALWAYS_INLINE LowerTriangle<T> select_triangle(const mask_t<T>& mask, const LowerTriangle<T>& a,
+                                                     const LowerTriangle<T>& b) {
+  return {select(mask, a.l00, b.l00), select(mask, a.l10, b.l10), select(mask, a.l11, b.l11),
+          select(mask, a.l20, b.l20), select(mask, a.l21, b.l21), select(mask, a.l22, b.l22)};
+}
+
+/// Brings principal stretches outside [1/limit, limit] back along the ray to no plastic strain; a deviator stays
+/// one.
+template <Real T>
+EVERT_STAGE void limit_stretches(double limit, LowerTriangle<T>& deformation) {
+  const Deflation<T> parts = deflate(matrix(deformation));
+  const Vec3<T> stretch = principal_stretches(parts);
+  const Vec3<T> strain{log(stretch[0]), log(stretch[1]), log(stretch[2])};
+  const T largest = max(max(abs(strain[0]), abs(strain[1])), abs(strain[2]));
+  const T allowed = T(std::log(limit));
+  const T share = allowed / max(largest, allowed);
+  const Vec3<T> limited{exp(share * strain[0]), exp(share * strain[1]), exp(share * strain[2])};
+  deformation = select_triangle(largest > allowed, lower_factor(isotropic_tensor(parts, limited)), deformation);
+}
+
+/// F_p after the flow: Q L of diag(growth) Vᵀ F_p.
+template <Real T, const auto& element>
+EVERT_STAGE void plastic_deformation_stage(const PlasticArrays& plastic, BatchRange batches,
+                                           const PointRun<T>& run, std::size_t points, FlowRun<T>& flowing) {
+  const T one(1.0);
+  const T limit_square(plastic.law.limit * plastic.law.limit);
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
+    const LowerTriangle<T> before = point.deformation();
+    const Vec3<T>& strain = flowing.log_growth[i];
+    const Vec3<T> growth{exp(strain[0]), exp(strain[1]), exp(strain[2])};
+    LowerTriangle<T> after =
+        lower_factor(isotropic_tensor(run.left[i], run.plane[i], run.right[i], growth) * before);
+    // Rounding would add up.
+    if (plastic.law.isochoric) after = (one - T(1.0 / 3) * (determinant(after) - one)) * after;
+    if (any(square_norm(after) > limit_square || square_norm(inverse(after)) > limit_square))
+      limit_stretches(plastic.law.limit, after);
+    flowing.deformation[i] = select_triangle(flowing.amount[i] > T(0.0), after, before);
+  }
+}
+
+/// F_e = F F_p⁻¹ after the flow.
+template <Real T, const auto& element>
+EVERT_STAGE void elastic_deformation_stage(const PlasticArrays& plastic, BatchRange batches, PointRun<T>& run,
+                                           std::size_t points, FlowRun<T>& flowing) {
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
+    Mat3<T>& elastic = run.deformation_gradient[i];
+    flowing.trial[i] = elastic;
+    const Mat3<T> after = elastic * point.deformation() * inverse(flowing.deformation[i]);
+    const auto flows = flowing.amount[i] > T(0.0);
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) elastic(k, j) = select(flows, after(k, j), elastic(k, j));
+  }
+}
+
+template <Real T, class Model>
+EVERT_STAGE void trial_energy_stage(const Model& model, const PointRun<T>& run, std::size_t points,
+                                    FlowRun<T>& flowing) {
+  for (std::size_t i = 0; i < points; ++i) flowing.energy[i] = model.energy(principal_stretches(run.plane[i]));
+}
+
+/// Flow takes energy or does not happen; what it takes is the work on it. Of isotropic models the return along
+/// a ray does; the limit of F_p may make it turn aside. True where a flow was undone.
+template <Real T, const auto& element, class Model>
+EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& plastic, BatchRange batches,
+                                    PointRun<T>& run, std::size_t points, FlowRun<T>& flowing) {
+  bool undone = false;
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
+    const T work = flowing.energy[i] - model.energy(principal_stretches(run.plane[i]));
+    const auto costs = flowing.amount[i] > T(0.0) && !(work >= T(0.0));
+    const auto flows = flowing.amount[i] > T(0.0) && work >= T(0.0);
+    if (any(costs)) {
+      undone = true;
+      flowing.amount[i] = select(costs, T(0.0), flowing.amount[i]);
+      flowing.deformation[i] = select_triangle(costs, point.deformation(), flowing.deformation[i]);
+      Mat3<T>& elastic = run.deformation_gradient[i];
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t k = 0; k < 3; ++k)
+          elastic(k, j) = select(costs, flowing.trial[i](k, j), elastic(k, j));
+    }
+    point.set_work(point.work() + select(flows, work, T(0.0)));
+  }
+  return undone;
+}
+
+/// L⁻ᵀ v, with `l` = L⁻¹: shape data at rest as those of F_p⁻¹. Triangular ones stay so.
+template <Real T>
+EVERT_ALWAYS_INLINE Vec3<T> times_inverse(const Vec3<T>& v, const LowerTriangle<T>& l) {
+  return {v[0] * l.l00 + (v[1] * l.l10 + v[2] * l.l20), v[1] * l.l11 + v[2] * l.l21, v[2] * l.l22};
+}
+
+/// Keeps F_p, and turns the shape data at rest into those of F_p⁻¹.
+template <Real T, const auto& element>
+EVERT_STAGE void keep_flow(const PlasticArrays& plastic, BatchRange batches, const FlowRun<T>& flowing) {
+  using Shape = RestGradients<T, element>;
+  constexpr std::size_t numbers_a_point = Shape::layout.numbers() * lanes_v<T>;
+  std::size_t i = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    T most = T(0.0);
+    const std::size_t first = static_cast<std::size_t>(b) * element.points * numbers_a_point;
+    const Shape rest{{plastic.rest_shapes + first}};
+    for (std::size_t q = 0; q < element.points; ++q, ++i) {
+      const auto point = PlasticPoint<T>::template at<element>(plastic, {b, q});
+      point.set_deformation(flowing.deformation[i]);
+      point.set_alpha(point.alpha() + flowing.amount[i]);
+      most = max(most, flowing.amount[i]);
+      const LowerTriangle<T> l = inverse(flowing.deformation[i]);
+      for (std::size_t j = 0; j < Shape::layout.vectors; ++j) {
+        double* to = plastic.shapes + first + q * numbers_a_point + Shape::layout.begin(j) * lanes_v<T>;
+        const Vec3<T> flown = times_inverse(rest.vector(q, j), l);
+        for (std::size_t k = 0; k < Shape::layout.components(j); ++k) store(flown[k], to + k * lanes_v<T>);
+      }
+    }
+    plastic.drift[b] += static_cast<float>(largest_lane(most));
+  }
+}
+
+/// Lets what yields flow, and leaves the run diagonalised at the F_e that remain.
+template <Real T, const auto& element, class Model>
+EVERT_ALWAYS_INLINE void flow(const Model& model, const PlasticArrays& plastic, BatchRange batches,
+                              PointRun<T>& run, std::size_t points) {
+  if (!may_yield<T, element>(plastic, batches, run, points)) return;
+  FlowRun<T> flowing;
+  if (!yield_stage<T, element>(plastic, batches, run, points, flowing)) return;
+  trial_energy_stage(model, run, points, flowing);
+  plastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
+  elastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
+  diagonalize(run, points);
+  if (plastic_work_stage<T, element>(model, plastic, batches, run, points, flowing)) diagonalize(run, points);
+  keep_flow<T, element>(plastic, batches, flowing);
+}
+
+}  // namespace evert::kernels
