@@ -81,10 +81,14 @@ BatchedBlock::BatchedBlock(const ElementView& element, const ElasticCells& cells
 }
 
 void BatchedBlock::point_kernels_at_memory() {
-  arrays_ = {element_block_.nodes.data(),    element_block_.shapes.data(),
-             element_block_.volumes.data(),  element_block_.cell_of_lane.data(),
-             rest_stiffness_.largest.data(), rest_stiffness_.spin.data(),
-             damping_state_.data(),          element_block_.fibres.data(),
+  arrays_ = {element_block_.nodes.data(),
+             element_block_.shapes.data(),
+             element_block_.volumes.data(),
+             element_block_.cell_of_lane.data(),
+             rest_stiffness_.largest.data(),
+             rest_stiffness_.spin.data(),
+             damping_state_.data(),
+             element_block_.fibres.data(),
              plastic_ != nullptr ? plastic_->arrays() : nullptr};
 }
 
@@ -170,7 +174,8 @@ LocalIndex BatchedBlock::inverted_points(const double* x) const {
 
 void BatchedBlock::follow_flow() const {
   if (plastic_ == nullptr) return;
-  constexpr float much = 0.01F;  // the step then is a percent shorter than it need be, if Poisson's ratio is small
+  constexpr float much =
+      0.01F;  // the step then is a percent shorter than it need be, if Poisson's ratio is small
   const Lame lame = lame_of(material_);
   const auto lanes = static_cast<std::size_t>(element_block_.lanes);
   for (LocalIndex b = 0; b < element_block_.batches(); ++b) {
@@ -182,7 +187,8 @@ void BatchedBlock::follow_flow() const {
       plastic_->settle(b);
     }
     const auto growth = static_cast<float>(settle ? 1 : stiffness_growth(drift, lame));
-    for (auto slot = static_cast<std::size_t>(b) * lanes; slot < static_cast<std::size_t>(b + 1) * lanes; ++slot) {
+    for (auto slot = static_cast<std::size_t>(b) * lanes; slot < static_cast<std::size_t>(b + 1) * lanes;
+         ++slot) {
       rest_stiffness_.largest[slot] = growth * settled_.largest[slot];
       rest_stiffness_.spin[slot] = growth * settled_.spin[slot];
     }

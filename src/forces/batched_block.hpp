@@ -57,10 +57,10 @@ class BatchedBlock final : public ElasticBlock {
   Damping damping_;
   double density_;
   kernels::ElasticKernels kernels_;
-  mutable RestStiffness rest_stiffness_;  // brought up to date when asked for
-  std::unique_ptr<PlasticCells> plastic_;          // where something flows
-  mutable RestStiffness settled_;                  // rest_stiffness_ where plastic_->drift() was 0
-  std::vector<double> mass_shares_;                // where something flows
+  mutable RestStiffness rest_stiffness_;   // brought up to date when asked for
+  std::unique_ptr<PlasticCells> plastic_;  // where something flows
+  mutable RestStiffness settled_;          // rest_stiffness_ where plastic_->drift() was 0
+  std::vector<double> mass_shares_;        // where something flows
   NumberArray damping_state_;
   kernels::BlockArrays arrays_{};         // into the vectors above
   std::vector<LocalIndex> lane_of_cell_;  // inverse of ElementBlock::cell_of_lane

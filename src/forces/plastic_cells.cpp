@@ -14,8 +14,7 @@ namespace evert {
 using kernels::plastic_numbers;
 
 PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
-    : law_(law),
-      block_(block),
+    : block_(block),
       layout_(rest_layout(block.shape_data, block.element.nodes(), block.element.points())),
       rest_shapes_(block.shapes.size()),
       state_(block.cell_of_lane.size() * block.element.points() * plastic_numbers),
@@ -28,8 +27,11 @@ PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
     for (std::size_t q = 0; q < block.element.points(); ++q)
       for (const std::size_t diagonal : {0, 2, 5}) state_[index(slot, q, diagonal)] = 1;
   }
-  arrays_ = {law, 0, rest_shapes_.data(), static_cast<double*>(block.shapes.data()), state_.data(), drift_.data()};
+  arrays_ = {law,          0, rest_shapes_.data(), static_cast<double*>(block.shapes.data()), state_.data(),
+             drift_.data()};
 }
+
+void PlasticCells::set_elapsed(double dt) { arrays_.dt = dt; }
 
 std::size_t PlasticCells::index(std::size_t slot, std::size_t q, std::size_t number) const {
   const auto lanes = static_cast<std::size_t>(block_.lanes);
@@ -97,7 +99,7 @@ void PlasticCells::set(LocalIndex cell, std::span<const double> numbers) {
   drift_[slot / static_cast<std::size_t>(block_.lanes)] = unsettled;
 }
 
-/// As keep_flow() of plastic_flow.hpp, number by number.
+/// As keep_deformation() of plastic_flow.hpp, number by number.
 void PlasticCells::set_shapes(std::size_t slot, std::size_t q) {
   const auto number = [&](std::size_t i) { return state_[index(slot, q, i)]; };
   const auto l =

@@ -58,7 +58,8 @@ void add_stiffness(const RestPoint& point, std::span<const double> masses, const
 }
 
 /// As points of one cell have it in common, which F_p as it is kept turns each in its own way.
-RestPoint common_point(const ElementBlock& block, const PlasticCells* flown, std::size_t slot, std::size_t q) {
+RestPoint common_point(const ElementBlock& block, const PlasticCells* flown, std::size_t slot,
+                       std::size_t q) {
   RestPoint point = rest_point(block, slot, q);
   if (flown == nullptr) return point;
   const Mat3d rotation = flown->rotation(slot, q);

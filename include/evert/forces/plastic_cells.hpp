@@ -9,20 +9,20 @@
 
 namespace evert {
 
-/// What the points of a block remember of their flow: F_p, α and the work on it. Holds the shape data at rest;
-/// those of the block itself become those of F_p⁻¹ (kernels/plastic_flow.hpp). Knows no MPI; allocates nothing
-/// after it was made.
+/// What the points of a block remember of their flow: F_p, α and the work on it. Holds the shape data at
+/// rest; those of the block itself become those of F_p⁻¹ (kernels/plastic_flow.hpp). Knows no MPI; allocates
+/// nothing after it was made.
 class PlasticCells {
  public:
   /// Of a block in double, whose shape data are those at rest and which outlives it: nothing has flown.
   PlasticCells(const Plasticity& law, ElementBlock& block);
 
-  [[nodiscard]] const Plasticity& law() const { return law_; }
+  [[nodiscard]] const Plasticity& law() const { return arrays_.law; }
   /// The time between the last update of the forces and the next one [s]; 0 unless told otherwise.
-  void set_elapsed(double dt) { arrays_.dt = dt; }
+  void set_elapsed(double dt);
 
-  /// Of one cell, as in ElementBlock::cell_of_lane: α as equivalent plastic strain in tension, and det F_p; the
-  /// mean over its volume at rest. Work on its flow [J], ≥ 0.
+  /// Of one cell, as in ElementBlock::cell_of_lane: α as equivalent plastic strain in tension, and det F_p;
+  /// the mean over its volume at rest. Work on its flow [J], ≥ 0.
   [[nodiscard]] double equivalent_strain(LocalIndex cell) const;
   [[nodiscard]] double volume_ratio(LocalIndex cell) const;
   /// Of all cells [J].
@@ -37,8 +37,8 @@ class PlasticCells {
   /// By how much rest stiffness may have grown in a batch since it was last settled, see settle(): Σ Δα.
   [[nodiscard]] std::span<const float> drift() const { return drift_; }
   void settle(LocalIndex batch) { drift_[static_cast<std::size_t>(batch)] = 0; }
-  /// The rotation R of F_p = R S as it is kept, S symmetric, of the cell in lane number `slot`: Rᵀ turns its shape
-  /// data to those of S⁻¹, which points of one cell have in common.
+  /// The rotation R of F_p = R S as it is kept, S symmetric, of the cell in lane number `slot`: Rᵀ turns its
+  /// shape data to those of S⁻¹, which points of one cell have in common.
   [[nodiscard]] Mat3d rotation(std::size_t slot, std::size_t q) const;
   /// F_p⁻¹ of det > 0, symmetric, at point `q` of a cell.
   [[nodiscard]] Mat3d inverse_stretch(LocalIndex cell, std::size_t q) const;
@@ -55,7 +55,6 @@ class PlasticCells {
   [[nodiscard]] double mean(std::size_t slot, ValueOf&& value_of) const;
   void set_shapes(std::size_t slot, std::size_t q);
 
-  Plasticity law_;
   ElementBlock& block_;
   ShapeLayout layout_;
   AlignedVector<double> rest_shapes_, state_;

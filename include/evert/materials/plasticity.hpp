@@ -23,7 +23,9 @@ struct Plasticity {
   double limit = 4;            ///< [-] > 1: the principal stretches of F_p stay within 1/limit and limit
 
   /// γ of a yield stress [Pa] at a shear modulus μ [Pa].
-  [[nodiscard]] static double yield_of_stress(double stress, double mu) { return stress / (std::sqrt(6.0) * mu); }
+  [[nodiscard]] static double yield_of_stress(double stress, double mu) {
+    return stress / (std::sqrt(6.0) * mu);
+  }
   /// Hardening of a modulus [Pa] of stress over plastic strain, both in tension.
   [[nodiscard]] static double hardening_of_modulus(double modulus, double mu) { return modulus / (3 * mu); }
   /// α as plastic strain in tension: √(2/3) α.
@@ -56,10 +58,9 @@ EVERT_ALWAYS_INLINE PlasticFlow<T> plastic_flow(const Plasticity& law, const Vec
   const T yield = T(law.yield) + T(law.hardening) * alpha;
   const T excess = length - yield;
   // Backward Euler of dα/dt = excess/relaxation_time.
-  const double share =
-      law.relaxation_time > 0 ? dt / (law.relaxation_time + (1 + law.hardening) * dt) : 1 / (1 + law.hardening);
-  const auto flows =
-      excess > T(rounding) && min(min(sigma[0], sigma[1]), sigma[2]) > floor;
+  const double share = law.relaxation_time > 0 ? dt / (law.relaxation_time + (1 + law.hardening) * dt)
+                                               : 1 / (1 + law.hardening);
+  const auto flows = excess > T(rounding) && min(min(sigma[0], sigma[1]), sigma[2]) > floor;
   const T amount = select(flows, T(share) * excess, T(0.0));
   return {(amount / max(length, T(rounding))) * measured, amount};
 }

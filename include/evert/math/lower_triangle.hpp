@@ -46,8 +46,7 @@ EVERT_ALWAYS_INLINE constexpr Mat3<T> operator*(const Mat3<T>& a, const LowerTri
 /// Σ L_ij²
 template <class T>
 EVERT_ALWAYS_INLINE constexpr T square_norm(const LowerTriangle<T>& l) {
-  return (l.l00 * l.l00 + l.l11 * l.l11 + l.l22 * l.l22) +
-         (l.l10 * l.l10 + l.l20 * l.l20 + l.l21 * l.l21);
+  return (l.l00 * l.l00 + l.l11 * l.l11 + l.l22 * l.l22) + (l.l10 * l.l10 + l.l20 * l.l20 + l.l21 * l.l21);
 }
 
 /// L of M = Q L with a rotation Q and a positive diagonal; det M > 0. L is that of every Q M: what of M does

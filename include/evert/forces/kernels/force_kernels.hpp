@@ -82,7 +82,7 @@ EVERT_ALWAYS_INLINE void add_forces(const Model& model, const BlockArrays& block
   for_each_run<T, element>(block, x, batches, [&](PointRun<T>& run, BatchRange piece, std::size_t points) {
     diagonalize(run, points);
     if constexpr (MayFlow<T, Model>) {
-      if (block.plastic != nullptr) flow<T, element>(model, *block.plastic, piece, run, points);
+      if (block.plastic != nullptr) flow<T, element>(model, block, x, piece, run, points);
     }
     if constexpr (NeedsFrames<Model>) {
       FramedRun<T> framed;

@@ -8,9 +8,10 @@
 
 /// Plastic flow.  paper A, section 6.3; PHYSICS 6
 ///
-/// What a flowing point changes is its shape data, and nothing else: with F_e = F F_p⁻¹ = Σ x_a ⊗ F_p⁻ᵀ ∂N_a/∂X
-/// all kernels compute F_e where they would compute F, and the forces Σ P_e F_p⁻ᵀ ∂N_a/∂X where they would
-/// compute those of P. A block without flow pays nothing, one that does not flow at present a comparison.
+/// What a flowing point changes is its shape data, and nothing else: with F_e = F F_p⁻¹ = Σ x_a ⊗ F_p⁻ᵀ
+/// ∂N_a/∂X all kernels compute F_e where they would compute F, and the forces Σ P_e F_p⁻ᵀ ∂N_a/∂X where they
+/// would compute those of P. A block without flow pays nothing, one that does not flow at present a
+/// comparison.
 ///
 /// Of F_p = Q L only the lower triangle L is kept. The rotation Q between is of no consequence to isotropic
 /// materials, and shape data that are triangular stay so.
@@ -21,7 +22,8 @@ inline constexpr std::size_t plastic_numbers = 8;
 
 /// Models of which points may flow; plastic strain is kept in double.
 template <class T, class Model>
-concept MayFlow = std::is_same_v<scalar_t<T>, double> && !HasFibres<Model> && !NeedsFrames<Model>;
+concept MayFlow = std::is_same_v < scalar_t<T>,
+double > &&!HasFibres<Model> && !NeedsFrames<Model>;
 
 /// The state of one point.
 template <Real T>
@@ -33,8 +35,12 @@ struct PlasticPoint {
     const std::size_t point = static_cast<std::size_t>(place.batch) * element.points + place.q;
     return {plastic.state + point * plastic_numbers * lanes_v<T>};
   }
-  [[nodiscard]] EVERT_ALWAYS_INLINE T number(std::size_t i) const { return load<T>(numbers + i * lanes_v<T>); }
-  EVERT_ALWAYS_INLINE void set(std::size_t i, const T& value) const { store(value, numbers + i * lanes_v<T>); }
+  [[nodiscard]] EVERT_ALWAYS_INLINE T number(std::size_t i) const {
+    return load<T>(numbers + i * lanes_v<T>);
+  }
+  EVERT_ALWAYS_INLINE void set(std::size_t i, const T& value) const {
+    store(value, numbers + i * lanes_v<T>);
+  }
 
   [[nodiscard]] EVERT_ALWAYS_INLINE LowerTriangle<T> deformation() const {
     return {number(0), number(1), number(2), number(3), number(4), number(5)};
@@ -56,10 +62,9 @@ struct FlowRun {
   using PerPoint = typename PointRun<T>::template PerPoint<Value>;
 
   PerPoint<Vec3<T>> log_growth;
-  PerPoint<T> amount;             ///< Δα; 0 where nothing flows
-  PerPoint<T> energy;             ///< ψ of the trial state
-  PerPoint<Mat3<T>> trial;        ///< F_e before
-  PerPoint<LowerTriangle<T>> deformation;  ///< F_p after
+  PerPoint<T> amount;                        ///< Δα; 0 where nothing flows
+  PerPoint<T> energy;                        ///< ψ of the trial state
+  PerPoint<LowerTriangle<T>> before, after;  ///< F_p
 };
 
 /// False where every stretch is so near to 1 that none can yield: |log σ| ≤ γ/√3 for all three is implied by
@@ -86,8 +91,7 @@ EVERT_STAGE bool yield_stage(const PlasticArrays& plastic, BatchRange batches, c
   bool flows = false;
   for (std::size_t i = 0; i < points; ++i) {
     const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
-    const auto flow =
-        plastic_flow(plastic.law, principal_stretches(run.plane[i]), point.alpha(), plastic.dt);
+    const auto flow = plastic_flow(plastic.law, principal_stretches(run.plane[i]), point.alpha(), plastic.dt);
     flowing.log_growth[i] = flow.log_growth;
     flowing.amount[i] = flow.amount;
     flows = flows || any(flow.amount > T(0.0));
@@ -102,8 +106,8 @@ EVERT_ALWAYS_INLINE LowerTriangle<T> select_triangle(const mask_t<T>& mask, cons
           select(mask, a.l20, b.l20), select(mask, a.l21, b.l21), select(mask, a.l22, b.l22)};
 }
 
-/// Brings principal stretches outside [1/limit, limit] back along the ray to no plastic strain; a deviator stays
-/// one.
+/// Brings principal stretches outside [1/limit, limit] back along the ray to no plastic strain; a deviator
+/// stays one.
 template <Real T>
 EVERT_STAGE void limit_stretches(double limit, LowerTriangle<T>& deformation) {
   const Deflation<T> parts = deflate(matrix(deformation));
@@ -113,7 +117,8 @@ EVERT_STAGE void limit_stretches(double limit, LowerTriangle<T>& deformation) {
   const T allowed = T(std::log(limit));
   const T share = allowed / max(largest, allowed);
   const Vec3<T> limited{exp(share * strain[0]), exp(share * strain[1]), exp(share * strain[2])};
-  deformation = select_triangle(largest > allowed, lower_factor(isotropic_tensor(parts, limited)), deformation);
+  deformation =
+      select_triangle(largest > allowed, lower_factor(isotropic_tensor(parts, limited)), deformation);
 }
 
 /// F_p after the flow: Q L of diag(growth) Vᵀ F_p.
@@ -125,6 +130,7 @@ EVERT_STAGE void plastic_deformation_stage(const PlasticArrays& plastic, BatchRa
   for (std::size_t i = 0; i < points; ++i) {
     const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
     const LowerTriangle<T> before = point.deformation();
+    flowing.before[i] = before;
     const Vec3<T>& strain = flowing.log_growth[i];
     const Vec3<T> growth{exp(strain[0]), exp(strain[1]), exp(strain[2])};
     LowerTriangle<T> after =
@@ -133,54 +139,15 @@ EVERT_STAGE void plastic_deformation_stage(const PlasticArrays& plastic, BatchRa
     if (plastic.law.isochoric) after = (one - T(1.0 / 3) * (determinant(after) - one)) * after;
     if (any(square_norm(after) > limit_square || square_norm(inverse(after)) > limit_square))
       limit_stretches(plastic.law.limit, after);
-    flowing.deformation[i] = select_triangle(flowing.amount[i] > T(0.0), after, before);
-  }
-}
-
-/// F_e = F F_p⁻¹ after the flow.
-template <Real T, const auto& element>
-EVERT_STAGE void elastic_deformation_stage(const PlasticArrays& plastic, BatchRange batches, PointRun<T>& run,
-                                           std::size_t points, FlowRun<T>& flowing) {
-  for (std::size_t i = 0; i < points; ++i) {
-    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
-    Mat3<T>& elastic = run.deformation_gradient[i];
-    flowing.trial[i] = elastic;
-    const Mat3<T> after = elastic * point.deformation() * inverse(flowing.deformation[i]);
-    const auto flows = flowing.amount[i] > T(0.0);
-    for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t k = 0; k < 3; ++k) elastic(k, j) = select(flows, after(k, j), elastic(k, j));
+    flowing.after[i] = select_triangle(flowing.amount[i] > T(0.0), after, before);
   }
 }
 
 template <Real T, class Model>
 EVERT_STAGE void trial_energy_stage(const Model& model, const PointRun<T>& run, std::size_t points,
                                     FlowRun<T>& flowing) {
-  for (std::size_t i = 0; i < points; ++i) flowing.energy[i] = model.energy(principal_stretches(run.plane[i]));
-}
-
-/// Flow takes energy or does not happen; what it takes is the work on it. Of isotropic models the return along
-/// a ray does; the limit of F_p may make it turn aside. True where a flow was undone.
-template <Real T, const auto& element, class Model>
-EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& plastic, BatchRange batches,
-                                    PointRun<T>& run, std::size_t points, FlowRun<T>& flowing) {
-  bool undone = false;
-  for (std::size_t i = 0; i < points; ++i) {
-    const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
-    const T work = flowing.energy[i] - model.energy(principal_stretches(run.plane[i]));
-    const auto costs = flowing.amount[i] > T(0.0) && !(work >= T(0.0));
-    const auto flows = flowing.amount[i] > T(0.0) && work >= T(0.0);
-    if (any(costs)) {
-      undone = true;
-      flowing.amount[i] = select(costs, T(0.0), flowing.amount[i]);
-      flowing.deformation[i] = select_triangle(costs, point.deformation(), flowing.deformation[i]);
-      Mat3<T>& elastic = run.deformation_gradient[i];
-      for (std::size_t j = 0; j < 3; ++j)
-        for (std::size_t k = 0; k < 3; ++k)
-          elastic(k, j) = select(costs, flowing.trial[i](k, j), elastic(k, j));
-    }
-    point.set_work(point.work() + select(flows, work, T(0.0)));
-  }
-  return undone;
+  for (std::size_t i = 0; i < points; ++i)
+    flowing.energy[i] = model.energy(principal_stretches(run.plane[i]));
 }
 
 /// L⁻ᵀ v, with `l` = L⁻¹: shape data at rest as those of F_p⁻¹. Triangular ones stay so.
@@ -191,43 +158,72 @@ EVERT_ALWAYS_INLINE Vec3<T> times_inverse(const Vec3<T>& v, const LowerTriangle<
 
 /// Keeps F_p, and turns the shape data at rest into those of F_p⁻¹.
 template <Real T, const auto& element>
-EVERT_STAGE void keep_flow(const PlasticArrays& plastic, BatchRange batches, const FlowRun<T>& flowing) {
+EVERT_STAGE void keep_deformation(const PlasticArrays& plastic, BatchRange batches,
+                                  const FlowRun<T>& flowing) {
   using Shape = RestGradients<T, element>;
   constexpr std::size_t numbers_a_point = Shape::layout.numbers() * lanes_v<T>;
   std::size_t i = 0;
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
-    T most = T(0.0);
     const std::size_t first = static_cast<std::size_t>(b) * element.points * numbers_a_point;
     const Shape rest{{plastic.rest_shapes + first}};
     for (std::size_t q = 0; q < element.points; ++q, ++i) {
-      const auto point = PlasticPoint<T>::template at<element>(plastic, {b, q});
-      point.set_deformation(flowing.deformation[i]);
-      point.set_alpha(point.alpha() + flowing.amount[i]);
-      most = max(most, flowing.amount[i]);
-      const LowerTriangle<T> l = inverse(flowing.deformation[i]);
+      PlasticPoint<T>::template at<element>(plastic, {b, q}).set_deformation(flowing.after[i]);
+      const LowerTriangle<T> l = inverse(flowing.after[i]);
+      double* const shape = plastic.shapes + first + q * numbers_a_point;
       for (std::size_t j = 0; j < Shape::layout.vectors; ++j) {
-        double* to = plastic.shapes + first + q * numbers_a_point + Shape::layout.begin(j) * lanes_v<T>;
         const Vec3<T> flown = times_inverse(rest.vector(q, j), l);
-        for (std::size_t k = 0; k < Shape::layout.components(j); ++k) store(flown[k], to + k * lanes_v<T>);
+        for (std::size_t k = 0; k < Shape::layout.components(j); ++k)
+          store(flown[k], shape + (Shape::layout.begin(j) + k) * lanes_v<T>);
       }
     }
-    plastic.drift[b] += static_cast<float>(largest_lane(most));
   }
 }
 
-/// Lets what yields flow, and leaves the run diagonalised at the F_e that remain.
+/// Flow takes energy or does not happen; what it takes is the work on it. The return along a ray does, of
+/// models whose stress grows with strain (Baker, Ericksen: st_venant_kirchhoff far compressed is not one);
+/// the limit of F_p may turn it aside. Takes what would cost energy back from `flowing`; true where there is
+/// some.
 template <Real T, const auto& element, class Model>
-EVERT_ALWAYS_INLINE void flow(const Model& model, const PlasticArrays& plastic, BatchRange batches,
-                              PointRun<T>& run, std::size_t points) {
+EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& plastic, BatchRange batches,
+                                    const PointRun<T>& run, FlowRun<T>& flowing) {
+  bool taken_back = false;
+  std::size_t i = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b) {
+    T most = T(0.0);
+    for (std::size_t q = 0; q < element.points; ++q, ++i) {
+      const auto point = PlasticPoint<T>::template at<element>(plastic, {b, q});
+      const T work = flowing.energy[i] - model.energy(principal_stretches(run.plane[i]));
+      const auto flows = flowing.amount[i] > T(0.0) && work >= T(0.0);
+      taken_back = taken_back || any(flowing.amount[i] > T(0.0) && !flows);
+      const T amount = select(flows, flowing.amount[i], T(0.0));
+      flowing.after[i] = select_triangle(flows, flowing.after[i], flowing.before[i]);
+      point.set_work(point.work() + select(flows, work, T(0.0)));
+      point.set_alpha(point.alpha() + amount);
+      most = max(most, amount);
+    }
+    plastic.drift[b] += static_cast<float>(largest_lane(most));
+  }
+  return taken_back;
+}
+
+/// Lets what yields flow, and leaves the run at the F_e that remain, diagonalised: bit by bit what it would
+/// be of the same F_p without flow, so that a restart goes on as if there had been none.
+template <Real T, const auto& element, class Model>
+EVERT_ALWAYS_INLINE void flow(const Model& model, const BlockArrays& block, const double* x,
+                              BatchRange batches, PointRun<T>& run, std::size_t points) {
+  const PlasticArrays& plastic = *block.plastic;
   if (!may_yield<T, element>(plastic, batches, run, points)) return;
   FlowRun<T> flowing;
   if (!yield_stage<T, element>(plastic, batches, run, points, flowing)) return;
   trial_energy_stage(model, run, points, flowing);
   plastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
-  elastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
-  diagonalize(run, points);
-  if (plastic_work_stage<T, element>(model, plastic, batches, run, points, flowing)) diagonalize(run, points);
-  keep_flow<T, element>(plastic, batches, flowing);
+  const auto deform = [&] {
+    keep_deformation<T, element>(plastic, batches, flowing);
+    gather_field_gradients<T, element>(block, x, batches, run.deformation_gradient.data());
+    diagonalize(run, points);
+  };
+  deform();
+  if (plastic_work_stage<T, element>(model, plastic, batches, run, flowing)) deform();
 }
 
 }  // namespace evert::kernels
