@@ -5,6 +5,7 @@
 #include "evert/filter/filtered_block.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace evert::bench {
 namespace {
@@ -66,6 +67,31 @@ std::vector<FilteredForces> all_filtered(const Specimen& specimen) {
   return all;
 }
 
+std::unique_ptr<ElasticBlock> plastic_block(const Specimen& specimen, double yield) {
+  const auto& cells = specimen.mesh.cells.front();
+  ElasticCells of_block{cells.type, cells.nodes, cells.interior, density, {}};
+  of_block.plasticity = Plasticity{.yield = yield};
+  return make_elastic_block(of_block, specimen.mesh.rest_positions, material, Damping{});
+}
+
+PlasticForces not_yielding(const Specimen& specimen) {
+  const auto x = specimen.positions.local();
+  const AlignedVector<double> same(x.begin(), x.end());
+  return {plastic_block(specimen, std::numeric_limits<double>::infinity()), {same, same}};
+}
+
+/// Sheared to and fro.
+PlasticForces flowing(const Specimen& specimen) {
+  constexpr double shear = 0.2;
+  std::array<AlignedVector<double>, 2> shapes;
+  for (auto& x : shapes) {
+    for (const Vec3d& rest : specimen.mesh.rest_positions)
+      x.insert(x.end(), {rest[0] + (&x == shapes.data() ? shear : -shear) * rest[1], rest[1], rest[2]});
+    x.push_back(0);  // the slack of NodeField
+  }
+  return {plastic_block(specimen, 0.01), std::move(shapes)};
+}
+
 /// The same number on every rank, for parts of some thousand cells.
 std::size_t parts_of(const DistributedMesh& mesh) {
   constexpr GlobalIndex cells_of_part = 4096;
@@ -96,6 +122,8 @@ TetSubject::TetSubject(MPI_Comm comm, int divisions)
       damped_(elastic(specimen_, DampingModel::rotated)),
       others_(forces_of(specimen_, other_materials())),
       filtered_(all_filtered(specimen_)),
+      not_yielding_(not_yielding(specimen_)),
+      flowing_(flowing(specimen_)),
       operator_(specimen_.mesh, damped_),
       assembled_(operator_, MATBAIJ),
       naive_(specimen_.mesh.cells.front().nodes, specimen_.mesh.rest_positions, material),
@@ -126,6 +154,14 @@ KernelCost TetSubject::baij_cost() const {
 void TetSubject::force(const FilteredForces& of) {
   std::ranges::fill(result_.local(), 0.0);
   const double* x = specimen_.positions.local().data();
+  of.block->update(x, result_.local().data(), of.block->interior());
+  of.block->update(x, result_.local().data(), of.block->boundary());
+}
+
+void TetSubject::force(PlasticForces& of) {
+  std::ranges::fill(result_.local(), 0.0);
+  const double* x = of.positions[of.turn].data();
+  of.turn = 1 - of.turn;
   of.block->update(x, result_.local().data(), of.block->interior());
   of.block->update(x, result_.local().data(), of.block->boundary());
 }

@@ -9,6 +9,7 @@
 #include "evert/math/svd3_batch.hpp"
 #include "evert/mesh/partition.hpp"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -53,6 +54,14 @@ struct FilteredForces {
   std::unique_ptr<ElasticBlock> block;
 };
 
+/// The tetrahedra of a specimen with plasticity.
+struct PlasticForces {
+  std::unique_ptr<ElasticBlock> block;
+  /// Local positions that it is brought to by turns, as NodeField::local.
+  std::array<AlignedVector<double>, 2> positions;
+  std::size_t turn = 0;
+};
+
 /// A box of tetrahedra and all that is done to it.
 class TetSubject {
  public:
@@ -78,6 +87,10 @@ class TetSubject {
   /// Filtered, of every model that can be; halo left out.
   [[nodiscard]] const auto& filtered() const { return filtered_; }
   void force(const FilteredForces& of);
+  /// With a yield that is not reached, and, between two shapes in turn, with all of them flowing; halo left
+  /// out.
+  void elastic_force_of_plastic() { force(not_yielding_); }
+  void flowing_force() { force(flowing_); }
   void damping();
   void matrix_free_product() { check(MatMult(operator_.mat(), specimen_.velocities.vec(), result_.vec())); }
   void baij_product() { check(MatMult(assembled_.mat(), specimen_.velocities.vec(), result_.vec())); }
@@ -87,12 +100,15 @@ class TetSubject {
   [[nodiscard]] double cells_per_part() const { return cells() / static_cast<double>(naive_parts_.count()); }
 
  private:
+  void force(PlasticForces& of);
+
   Specimen specimen_;
   NodeField result_;
   ElasticForces plain_;
   ElasticForces damped_;
   std::vector<std::unique_ptr<MaterialForces>> others_;
   std::vector<FilteredForces> filtered_;
+  PlasticForces not_yielding_, flowing_;
   DampingOperator operator_;
   AssembledDamping assembled_;
   NaiveForces naive_;

@@ -5,12 +5,15 @@
 #include "evert/math/lower_triangle.hpp"
 #include "evert/math/svd3.hpp"
 
+#include "rest_point.hpp"
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace evert {
 
+using kernels::goal_numbers;
 using kernels::plastic_numbers;
 
 PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
@@ -27,11 +30,93 @@ PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
     for (std::size_t q = 0; q < block.element.points(); ++q)
       for (const std::size_t diagonal : {0, 2, 5}) state_[index(slot, q, diagonal)] = 1;
   }
-  arrays_ = {law,          0, rest_shapes_.data(), static_cast<double*>(block.shapes.data()), state_.data(),
-             drift_.data()};
+  arrays_ = {.law = law,
+             .rest_shapes = rest_shapes_.data(),
+             .shapes = static_cast<double*>(block.shapes.data()),
+             .state = state_.data(),
+             .drift = drift_.data()};
 }
 
-void PlasticCells::set_elapsed(double dt) { arrays_.dt = dt; }
+void PlasticCells::set_times(double last, double next) {
+  arrays_.dt = next - last;
+  const bool controlled = !goal_.empty() && next > control_.from && next <= control_.until;
+  arrays_.goal = controlled ? goal_.data() : nullptr;
+  arrays_.attraction = controlled ? -std::expm1(-control_.strength * arrays_.dt) : 0;
+}
+
+std::vector<LocalIndex> PlasticCells::set_goal(const PlasticControl& control, const GoalPosition& position) {
+  const std::size_t nodes = block_.element.nodes(), points = block_.element.points();
+  const double most = std::log(arrays_.law.limit) * (1 + 1e-9);
+  std::vector<LocalIndex> beyond;
+  AlignedVector<double> goal(block_.cell_of_lane.size() * points * goal_numbers);
+  for (LocalIndex cell = 0; cell < block_.cells; ++cell) {
+    const auto slot = slot_of(cell);
+    bool within = true;
+    for (std::size_t q = 0; q < points; ++q) {
+      const NodeVectors gradients = rest_point(block_, slot, q).gradients;  // nothing has flown yet
+      Mat3d deformation{};
+      for (std::size_t a = 0; a < nodes; ++a) deformation += outer(position(cell, a), gradients[a]);
+      const auto svd = svd3(deformation);
+      const Vec3d strain{std::log(svd.sigma[0]), std::log(svd.sigma[1]),
+                         std::log(std::max(svd.sigma[2], 0.0))};
+      within = within && std::abs(strain[0]) <= most && std::abs(strain[2]) <= most;
+      const Mat3d log_stretch = times_transpose(svd.v * diagonal(strain), svd.v);
+      const auto lanes = static_cast<std::size_t>(block_.lanes);
+      const std::size_t first = (slot / lanes * points + q) * goal_numbers * lanes + slot % lanes;
+      std::size_t i = 0;
+      for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column <= row; ++column)
+          goal[first + i++ * lanes] = log_stretch(row, column);
+    }
+    if (!within) beyond.push_back(cell);
+  }
+  if (!beyond.empty()) return beyond;
+  goal_ = std::move(goal);
+  control_ = control;
+  return {};
+}
+
+Mat3d PlasticCells::goal(std::size_t slot, std::size_t q) const {
+  const auto lanes = static_cast<std::size_t>(block_.lanes);
+  const std::size_t first =
+      (slot / lanes * block_.element.points() + q) * goal_numbers * lanes + slot % lanes;
+  Mat3d symmetric{};
+  std::size_t i = 0;
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column <= row; ++column)
+      symmetric(row, column) = symmetric(column, row) = goal_[first + i++ * lanes];
+  return symmetric;
+}
+
+double PlasticCells::square_of_goal() const {
+  if (goal_.empty()) return 0;
+  double sum = 0;
+  for (const LocalIndex slot : slot_of_cell_)
+    for (std::size_t q = 0; q < block_.element.points(); ++q) {
+      const Mat3d log_goal = goal(static_cast<std::size_t>(slot), q);
+      sum += volume(static_cast<std::size_t>(slot), q) * contract(log_goal, log_goal);
+    }
+  return sum;
+}
+
+double PlasticCells::square_distance_to_goal() const {
+  if (goal_.empty()) return 0;
+  double sum = 0;
+  for (const LocalIndex of_cell : slot_of_cell_)
+    for (std::size_t q = 0; q < block_.element.points(); ++q) {
+      const auto slot = static_cast<std::size_t>(of_cell);
+      const auto svd = svd3(deformation(slot, q));
+      const Vec3d strain{std::log(svd.sigma[0]), std::log(svd.sigma[1]), std::log(svd.sigma[2])};
+      const Mat3d left = times_transpose(svd.v * diagonal(strain), svd.v) - goal(slot, q);
+      sum += volume(slot, q) * contract(left, left);
+    }
+  return sum;
+}
+
+double PlasticCells::volume(std::size_t slot, std::size_t q) const {
+  const auto lanes = static_cast<std::size_t>(block_.lanes);
+  return block_.volumes[(slot / lanes * block_.element.points() + q) * lanes + slot % lanes];
+}
 
 std::size_t PlasticCells::index(std::size_t slot, std::size_t q, std::size_t number) const {
   const auto lanes = static_cast<std::size_t>(block_.lanes);
@@ -50,15 +135,22 @@ Mat3d PlasticCells::deformation(std::size_t slot, std::size_t q) const {
 
 template <class ValueOf>
 double PlasticCells::mean(std::size_t slot, ValueOf&& value_of) const {
-  const auto lanes = static_cast<std::size_t>(block_.lanes);
-  const std::size_t points = block_.element.points();
-  double sum = 0, volume = 0;
-  for (std::size_t q = 0; q < points; ++q) {
-    const double of_point = block_.volumes[(slot / lanes * points + q) * lanes + slot % lanes];
+  double sum = 0, of_cell = 0;
+  for (std::size_t q = 0; q < block_.element.points(); ++q) {
+    const double of_point = volume(slot, q);
     sum += of_point * value_of(q);
-    volume += of_point;
+    of_cell += of_point;
   }
-  return sum / volume;
+  return sum / of_cell;
+}
+
+double PlasticCells::sum(std::size_t number) const {
+  double all = 0;
+  for (const LocalIndex slot : slot_of_cell_)
+    for (std::size_t q = 0; q < block_.element.points(); ++q)
+      all += volume(static_cast<std::size_t>(slot), q) *
+             state_[index(static_cast<std::size_t>(slot), q, number)];
+  return all;
 }
 
 double PlasticCells::equivalent_strain(LocalIndex cell) const {
@@ -69,16 +161,6 @@ double PlasticCells::equivalent_strain(LocalIndex cell) const {
 double PlasticCells::volume_ratio(LocalIndex cell) const {
   const auto slot = slot_of(cell);
   return mean(slot, [&](std::size_t q) { return determinant(deformation(slot, q)); });
-}
-
-double PlasticCells::work() const {
-  const auto lanes = static_cast<std::size_t>(block_.lanes);
-  const std::size_t points = block_.element.points();
-  double sum = 0;
-  for (std::size_t slot = 0; slot < block_.cell_of_lane.size(); ++slot)
-    for (std::size_t q = 0; q < points; ++q)
-      sum += block_.volumes[(slot / lanes * points + q) * lanes + slot % lanes] * state_[index(slot, q, 7)];
-  return sum;
 }
 
 std::size_t PlasticCells::numbers_per_cell() const { return block_.element.points() * plastic_numbers; }
@@ -127,8 +209,8 @@ Mat3d PlasticCells::inverse_stretch(LocalIndex cell, std::size_t q) const {
 }
 
 std::size_t PlasticCells::memory() const {
-  return (rest_shapes_.capacity() + state_.capacity()) * sizeof(double) + drift_.capacity() * sizeof(float) +
-         slot_of_cell_.capacity() * sizeof(LocalIndex);
+  return (rest_shapes_.capacity() + state_.capacity() + goal_.capacity()) * sizeof(double) +
+         drift_.capacity() * sizeof(float) + slot_of_cell_.capacity() * sizeof(LocalIndex);
 }
 
 }  // namespace evert

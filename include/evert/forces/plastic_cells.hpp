@@ -5,7 +5,9 @@
 #include "evert/materials/plasticity.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <span>
+#include <vector>
 
 namespace evert {
 
@@ -18,15 +20,25 @@ class PlasticCells {
   PlasticCells(const Plasticity& law, ElementBlock& block);
 
   [[nodiscard]] const Plasticity& law() const { return arrays_.law; }
-  /// The time between the last update of the forces and the next one [s]; 0 unless told otherwise.
-  void set_elapsed(double dt);
+  /// The times of the last update of the forces and of the next one [s]; the same unless told otherwise.
+  void set_times(double last, double next);
+  /// From now on flow is controlled. The goal of a point is the deformation that brings the nodes of its cell
+  /// to `position(cell, node of the cell)` [m], without its rotation. Returns the cells, ascending, whose
+  /// goal is inverted or flat, or stretches them beyond the limit of the law: then nothing is controlled.
+  using GoalPosition = std::function<Vec3d(LocalIndex cell, std::size_t node)>;
+  [[nodiscard]] std::vector<LocalIndex> set_goal(const PlasticControl& control, const GoalPosition& position);
+  /// ∫‖log S − log S of the goal‖² dV over the volume at rest [m³]; 0 without a control.
+  [[nodiscard]] double square_distance_to_goal() const;
+  /// ∫‖log S of the goal‖² dV [m³]: what it was at the start.
+  [[nodiscard]] double square_of_goal() const;
 
   /// Of one cell, as in ElementBlock::cell_of_lane: α as equivalent plastic strain in tension, and det F_p;
   /// the mean over its volume at rest. Work on its flow [J], ≥ 0.
   [[nodiscard]] double equivalent_strain(LocalIndex cell) const;
   [[nodiscard]] double volume_ratio(LocalIndex cell) const;
-  /// Of all cells [J].
-  [[nodiscard]] double work() const;
+  /// Of all cells [J]; that of the control, of either sign, apart.
+  [[nodiscard]] double work() const { return sum(7); }
+  [[nodiscard]] double control_work() const { return sum(8); }
 
   /// Numbers that a cell remembers, and these; they mean the same in any block of the same cell, so that they
   /// can be kept and brought back bit by bit.
@@ -51,13 +63,18 @@ class PlasticCells {
   [[nodiscard]] std::size_t slot_of(LocalIndex cell) const;
   [[nodiscard]] Mat3d deformation(std::size_t slot, std::size_t q) const;
   /// The mean of `value_of(q)` over a cell's volume at rest.
+  [[nodiscard]] double sum(std::size_t number) const;
   template <class ValueOf>
   [[nodiscard]] double mean(std::size_t slot, ValueOf&& value_of) const;
   void set_shapes(std::size_t slot, std::size_t q);
+  [[nodiscard]] double volume(std::size_t slot, std::size_t q) const;
+  [[nodiscard]] Mat3d goal(std::size_t slot, std::size_t q) const;
 
   ElementBlock& block_;
   ShapeLayout layout_;
   AlignedVector<double> rest_shapes_, state_;
+  AlignedVector<double> goal_;  // [batch][point] of goal_numbers [lane], where there is a control
+  PlasticControl control_;
   AlignedVector<float> drift_;
   std::vector<LocalIndex> slot_of_cell_;
   kernels::PlasticArrays arrays_;

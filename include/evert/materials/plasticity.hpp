@@ -32,6 +32,14 @@ struct Plasticity {
   [[nodiscard]] static double equivalent_strain(double alpha) { return std::sqrt(2.0 / 3) * alpha; }
 };
 
+/// Makes flow go towards a given F_p, and by itself where nothing yields.  paper A, section 7
+struct PlasticControl {
+  double strength =
+      0;            ///< [1/s] rate at which log F_p approaches its goal by itself; 0: only what yields flows
+  double from = 0;  ///< [s]
+  double until = std::numeric_limits<double>::infinity();  ///< [s]; before and afterwards flow is free
+};
+
 /// What flows from F_e into F_p in one step.
 template <class T>
 struct PlasticFlow {
@@ -39,18 +47,19 @@ struct PlasticFlow {
   T amount;            ///< its norm, Δα; 0 where nothing flows
 };
 
+/// States that are flatter, or inverted, do not flow: no log strain is theirs.
+inline constexpr double flattest_flow = 1e-6;
+
 /// Where a trial state returns to: along the ray from it to the origin of log strains, or of their deviators,
-/// which is the nearest point of the yield surface. `sigma` are the principal stretches of F_e, in any order;
-/// flat and inverted states do not flow, since no log strain is theirs. `alpha` is that of before, `dt` the
-/// time that has passed [s].
+/// which is the nearest point of the yield surface. `sigma` are the principal stretches of F_e, in any order,
+/// `alpha` is that of before, `dt` the time that has passed [s].
 ///
 /// An excess of the order of rounding does not flow: what has returned rests there, bit by bit.
 template <Real T>
 EVERT_ALWAYS_INLINE PlasticFlow<T> plastic_flow(const Plasticity& law, const Vec3<T>& sigma, const T& alpha,
                                                 double dt) {
-  constexpr double flattest = 1e-6;
   constexpr double rounding = 1e-14;
-  const T floor = T(flattest);
+  const T floor = T(flattest_flow);
   const Vec3<T> strain{log(max(sigma[0], floor)), log(max(sigma[1], floor)), log(max(sigma[2], floor))};
   const T mean = law.isochoric ? T(1.0 / 3) * (strain[0] + strain[1] + strain[2]) : T(0.0);
   const Vec3<T> measured{strain[0] - mean, strain[1] - mean, strain[2] - mean};

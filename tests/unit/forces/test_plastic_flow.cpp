@@ -35,7 +35,7 @@ class Cube {
   /// The forces at F, after flow; `dt` is the time since the last call.
   NodalValues deform(const Mat3d& f, double dt = 0) {
     x_ = deformed(body_, [&](const Vec3d& p) { return f * p; });
-    block_->plastic()->set_elapsed(dt);
+    block_->plastic()->set_times(0, dt);
     return forces(*block_, x_);
   }
   /// Principal log strains of F_e, ascending, as a vector; of hexahedra, which are not turned.
@@ -394,6 +394,74 @@ TEST(PlasticFlow, BoundsTheStepByTheShapeThatIsLeft) {
       EXPECT_GE(slowly->stable_step(at.data()).undamped, 0.95 * limit);
     }
   }
+}
+
+// --- control.  paper A, section 7
+
+/// A cube of which every cell is to become `goal` times what it is.
+std::vector<LocalIndex> set_goal(ElasticBlock& block, const Body& body, const PlasticControl& control,
+                                 const Mat3d& goal) {
+  return block.plastic()->set_goal(control, [&](LocalIndex cell, std::size_t a) {
+    return goal * body.rest[static_cast<std::size_t>(body.cell(cell)[a])];
+  });
+}
+
+double distance_to_goal(ElasticBlock& block) { return std::sqrt(block.plastic()->square_distance_to_goal()); }
+
+const Mat3d disk = rotation(1.1) * diagonal(Vec3d{1.5, 0.5, 1.4}) * rotation(0.3);
+
+TEST(PlasticControl, NeverMovesAwayFromTheGoalInTenThousandRandomSteps) {
+  std::mt19937_64 random(8);
+  for (const double strength : {0.0, 2.0})
+    for (const auto type : all_elements) {
+      const Body body = box(type, 1, 1, 1, 1, 0.1);
+      const auto block = plastic_block(body, isotropic[1], {.yield = 0.02, .isochoric = false});
+      ASSERT_TRUE(set_goal(*block, body, {.strength = strength}, disk).empty());
+      double distance = distance_to_goal(*block);
+      const double start = distance;
+      EXPECT_NEAR(distance, std::sqrt(block->plastic()->square_of_goal()), 1e-12 * distance);
+      for (int step = 0; step < 1250; ++step) {
+        const Mat3d f = random_gradient(random, 0.3);
+        block->plastic()->set_times(step, step + 0.001);
+        forces(*block, deformed(
+                           body, [&](const Vec3d& p) { return f * p; }, 0.01, static_cast<unsigned>(step)));
+        const double next = distance_to_goal(*block);
+        ASSERT_LE(next, distance * (1 + 1e-12)) << name_of(type) << ", step " << step;
+        distance = next;
+        ASSERT_GE(block->plastic()->work(), 0);
+      }
+      EXPECT_LT(distance, 0.5 * start) << name_of(type);
+    }
+}
+
+/// By itself log S goes to its goal as e^(−strength t), whatever holds the body.
+TEST(PlasticControl, ApproachesTheGoalAtItsRate) {
+  for (const auto type : all_elements) {
+    const Body body = box(type, 1, 1, 1, 1, 0.1);
+    const auto block = plastic_block(body, isotropic[1], {.isochoric = false});
+    ASSERT_TRUE(set_goal(*block, body, {.strength = 3, .from = 1, .until = 2}, disk).empty());
+    const double start = distance_to_goal(*block);
+    const auto x = nodal_values(body.rest);
+    for (int step = 0; step < 30; ++step) {
+      block->plastic()->set_times(0.1 * step, 0.1 * (step + 1));
+      forces(*block, x);
+      const double in_force = std::clamp(0.1 * (step + 1) - 1, 0.0, 1.0);
+      EXPECT_NEAR(distance_to_goal(*block), start * std::exp(-3 * in_force), 1e-10 * start) << name_of(type);
+    }
+    EXPECT_GT(block->plastic()->control_work(), 0);  // the body is held in its old shape
+    EXPECT_EQ(block->plastic()->work(), 0);
+    EXPECT_NEAR(block->plastic()->control_work(), block->energy(x.data()), 1e-9 * block->energy(x.data()));
+  }
+}
+
+TEST(PlasticControl, RefusesGoalsThatAreInvertedFlatOrBeyondTheLimit) {
+  const Body body = box(CellType::tet4, 1, 1, 1, 1, 0.1);
+  const auto block = plastic_block(body, isotropic[1], {.isochoric = false, .limit = 3});
+  for (const Mat3d& goal : {diagonal(Vec3d{1, 1, -1}), diagonal(Vec3d{1, 1, 0}), diagonal(Vec3d{3.1, 1, 1}),
+                            diagonal(Vec3d{1, 0.3, 1})})
+    EXPECT_EQ(static_cast<LocalIndex>(set_goal(*block, body, {}, goal).size()), body.cells());
+  EXPECT_EQ(block->plastic()->square_of_goal(), 0);
+  EXPECT_TRUE(set_goal(*block, body, {}, rotation(2) * diagonal(Vec3d{2.9, 0.4, 1})).empty());
 }
 
 }  // namespace

@@ -16,7 +16,9 @@ struct PlasticArrays {
   const double* rest_shapes = nullptr;  ///< BlockArrays::shapes without flow
   double* shapes = nullptr;             ///< BlockArrays::shapes: those of F_p⁻¹
   double* state = nullptr;              ///< [batch][point] of plastic_numbers [lane], see plastic_flow.hpp
-  float* drift = nullptr;  ///< [batch] Σ of the largest Δα of its points since it was last cleared
+  const double* goal = nullptr;  ///< [batch][point] of goal_numbers [lane]; null where no control is in force
+  double attraction = 0;         ///< what log F_p goes of its way to the goal by itself, in [0, 1)
+  float* drift = nullptr;        ///< [batch] Σ of the largest Δα of its points since it was last cleared
 };
 
 /// The arrays of an ElementBlock and what goes with it, as the kernels see them. `void` stands for the scalar

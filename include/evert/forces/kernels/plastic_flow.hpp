@@ -17,8 +17,11 @@
 /// materials, and shape data that are triangular stay so.
 namespace evert::kernels {
 
-/// Numbers kept per point and lane: L row after row, α, and the work that has gone into flow [J/m³].
-inline constexpr std::size_t plastic_numbers = 8;
+/// Numbers kept per point and lane: L row after row, α, the work that has gone into flow, and that of the
+/// control on the elastic energy [J/m³].
+inline constexpr std::size_t plastic_numbers = 9;
+/// log S of the goal, the lower triangle row after row.
+inline constexpr std::size_t goal_numbers = 6;
 
 /// Models of which points may flow; plastic strain is kept in double.
 template <class T, class Model>
@@ -53,6 +56,8 @@ struct PlasticPoint {
   EVERT_ALWAYS_INLINE void set_alpha(const T& alpha) const { set(6, alpha); }
   [[nodiscard]] EVERT_ALWAYS_INLINE T work() const { return number(7); }
   EVERT_ALWAYS_INLINE void set_work(const T& work) const { set(7, work); }
+  [[nodiscard]] EVERT_ALWAYS_INLINE T control_work() const { return number(8); }
+  EVERT_ALWAYS_INLINE void set_control_work(const T& work) const { set(8, work); }
 };
 
 /// What a run of flowing points holds besides PointRun.
@@ -67,19 +72,20 @@ struct FlowRun {
   PerPoint<LowerTriangle<T>> before, after;  ///< F_p
 };
 
-/// False where every stretch is so near to 1 that none can yield: |log σ| ≤ γ/√3 for all three is implied by
-/// 1/(1 + γ/√3) ≤ σ ≤ 1 + γ/√3.
+/// False where nothing can yield: |log σ| ≤ γ/√3 for all three is implied by 1/(1 + γ/√3) ≤ σ ≤ 1 + γ/√3.
 template <Real T, const auto& element>
 EVERT_STAGE bool may_yield(const PlasticArrays& plastic, BatchRange batches, const PointRun<T>& run,
                            std::size_t points) {
+  const bool hardens = plastic.law.hardening > 0;
   bool may = false;
   for (std::size_t i = 0; i < points; ++i) {
     const auto point = PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i));
-    const T bound = T(1.0) + T(0.577) * (T(plastic.law.yield) + T(plastic.law.hardening) * point.alpha());
+    T bound = T(1 + 0.577 * plastic.law.yield);
+    if (hardens) bound += T(0.577 * plastic.law.hardening) * point.alpha();
     const Vec3<T> sigma = principal_stretches(run.plane[i]);
     const T largest = max(max(sigma[0], sigma[1]), sigma[2]);
     const T smallest = min(min(sigma[0], sigma[1]), sigma[2]);
-    may = may || !all(largest <= bound && smallest * bound >= T(1.0));
+    may = may || any(smallest > T(flattest_flow) && (largest > bound || smallest * bound < T(1.0)));
   }
   return may;
 }
@@ -150,6 +156,55 @@ EVERT_STAGE void trial_energy_stage(const Model& model, const PointRun<T>& run, 
     flowing.energy[i] = model.energy(principal_stretches(run.plane[i]));
 }
 
+/// log S of F_p = R S.
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> log_stretch(const LowerTriangle<T>& deformation) {
+  const Deflation<T> parts = deflate(matrix(deformation));
+  const Vec3<T> stretch = principal_stretches(parts);
+  const Vec3<T> strain{log(stretch[0]), log(stretch[1]), log(stretch[2])};
+  return transpose_times(polar_rotation(parts), isotropic_tensor(parts, strain));
+}
+
+/// e^C of a symmetric matrix; its principal values, raised above 0, are singular values.
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> exponential(const Mat3<T>& c) {
+  const T raise = T(1.0) + sqrt(contract(c, c));
+  const Deflation<T> parts = deflate(c + raise * identity<T>());
+  const Vec3<T> raised = principal_stretches(parts);
+  return isotropic_tensor(parts, {exp(raised[0] - raise), exp(raised[1] - raise), exp(raised[2] - raise)});
+}
+
+template <Real T, const auto& element>
+EVERT_ALWAYS_INLINE Mat3<T> load_goal(const PlasticArrays& plastic, const PointPlace& place) {
+  const std::size_t point = static_cast<std::size_t>(place.batch) * element.points + place.q;
+  const double* numbers = plastic.goal + point * goal_numbers * lanes_v<T>;
+  const auto at = [&](std::size_t i) { return load<T>(numbers + i * lanes_v<T>); };
+  const T c10 = at(1), c20 = at(3), c21 = at(4);
+  return {{{{at(0), c10, c20}, {c10, at(2), c21}, {c20, c21, at(5)}}}};
+}
+
+/// Turns the flow towards the goal: log S ends in the point of the segment between before and after that is
+/// nearest to the goal, and goes a part of the rest of the way there by itself.  paper A, section 7
+template <Real T, const auto& element>
+EVERT_STAGE void control_stage(const PlasticArrays& plastic, BatchRange batches, std::size_t points,
+                               FlowRun<T>& flowing) {
+  constexpr double rounding = 1e-14;
+  for (std::size_t i = 0; i < points; ++i) {
+    const Mat3<T> goal = load_goal<T, element>(plastic, place_of<element>(batches, i));
+    const Mat3<T> before = log_stretch(flowing.before[i]);
+    const Mat3<T> way = log_stretch(flowing.after[i]) - before;
+    const T square = contract(way, way);
+    const T share = min(max(contract(goal - before, way) / max(square, T(1e-30)), T(0.0)), T(1.0));
+    const Mat3<T> nearest = before + share * way;
+    const Mat3<T> end = nearest + T(plastic.attraction) * (goal - nearest);
+    const Mat3<T> gone = end - before;
+    const T amount = sqrt(contract(gone, gone));
+    const auto flows = amount > T(rounding);
+    flowing.amount[i] = select(flows, amount, T(0.0));
+    flowing.after[i] = select_triangle(flows, lower_factor(exponential(end)), flowing.before[i]);
+  }
+}
+
 /// L⁻ᵀ v, with `l` = L⁻¹: shape data at rest as those of F_p⁻¹. Triangular ones stay so.
 template <Real T>
 EVERT_ALWAYS_INLINE Vec3<T> times_inverse(const Vec3<T>& v, const LowerTriangle<T>& l) {
@@ -193,6 +248,12 @@ EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& pla
     for (std::size_t q = 0; q < element.points; ++q, ++i) {
       const auto point = PlasticPoint<T>::template at<element>(plastic, {b, q});
       const T work = flowing.energy[i] - model.energy(principal_stretches(run.plane[i]));
+      if (plastic.attraction > 0) {
+        point.set_control_work(point.control_work() - select(flowing.amount[i] > T(0.0), work, T(0.0)));
+        point.set_alpha(point.alpha() + flowing.amount[i]);
+        most = max(most, flowing.amount[i]);
+        continue;
+      }
       const auto flows = flowing.amount[i] > T(0.0) && work >= T(0.0);
       taken_back = taken_back || any(flowing.amount[i] > T(0.0) && !flows);
       const T amount = select(flows, flowing.amount[i], T(0.0));
@@ -212,11 +273,13 @@ template <Real T, const auto& element, class Model>
 EVERT_ALWAYS_INLINE void flow(const Model& model, const BlockArrays& block, const double* x,
                               BatchRange batches, PointRun<T>& run, std::size_t points) {
   const PlasticArrays& plastic = *block.plastic;
-  if (!may_yield<T, element>(plastic, batches, run, points)) return;
+  const bool attracts = plastic.attraction > 0;
+  if (!attracts && !may_yield<T, element>(plastic, batches, run, points)) return;
   FlowRun<T> flowing;
-  if (!yield_stage<T, element>(plastic, batches, run, points, flowing)) return;
+  if (!yield_stage<T, element>(plastic, batches, run, points, flowing) && !attracts) return;
   trial_energy_stage(model, run, points, flowing);
   plastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
+  if (plastic.goal != nullptr) control_stage<T, element>(plastic, batches, points, flowing);
   const auto deform = [&] {
     keep_deformation<T, element>(plastic, batches, flowing);
     gather_field_gradients<T, element>(block, x, batches, run.deformation_gradient.data());
