@@ -53,12 +53,14 @@ struct Observers {
 };
 
 FrameFields fields_of(const OutputConfig& output) {
-  FrameFields fields{false, false, false, false};
+  FrameFields fields{false, false, false, false, false, false};
   for (const auto field : output.fields) {
     if (field == OutputField::velocity) fields.velocity = true;
     if (field == OutputField::min_stretch) fields.min_stretch = true;
     if (field == OutputField::inversion) fields.inversion = true;
     if (field == OutputField::rank) fields.rank = true;
+    if (field == OutputField::plastic_strain) fields.plastic_strain = true;
+    if (field == OutputField::plastic_volume) fields.plastic_volume = true;
   }
   return fields;
 }
@@ -83,8 +85,9 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
         std::make_unique<FrameObserver>(std::move(writer), 1 / *scene.output.frames_per_second));
   }
   if (scene.output.energy_log) {
-    auto log = restarted ? EnergyLog::continue_from(mesh.comm, files("energy.csv"), simulation.time())
-                         : EnergyLog(mesh.comm, files("energy.csv"));
+    const bool flows = simulation.elastic().may_flow();
+    auto log = restarted ? EnergyLog::continue_from(mesh.comm, files("energy.csv"), simulation.time(), flows)
+                         : EnergyLog(mesh.comm, files("energy.csv"), flows);
     observers.add(std::make_unique<EnergyObserver>(std::move(log), *scene.output.energy_log));
     if (!simulation.obstacles().empty()) {
       const auto obstacles = simulation.obstacles();
@@ -104,7 +107,7 @@ Observers make_observers(const SceneConfig& scene, const Simulation& simulation,
 
 void restore(Simulation& simulation, const std::string& path, const std::string& fingerprint) {
   const auto state = read_checkpoint(simulation.mesh(), path, fingerprint);
-  simulation.restore(state.nodes(), state.scalars);
+  simulation.restore(state.nodes(), state.scalars, state.flow);
 }
 
 GlobalIndex quadrature_points_of(const DistributedMesh& mesh) {

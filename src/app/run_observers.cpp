@@ -34,9 +34,7 @@ void FrameObserver::write(const Simulation& simulation) {
   // A restart begins at a frame that is there already.
   const auto frames = writer_.frames();
   if (!frames.empty() && frames.back().time >= simulation.time()) return;
-  writer_.write(
-      {simulation.time(), simulation.steps(), simulation.positions(), simulation.velocities(),
-       [&](std::size_t block, std::span<double> per_cell) { simulation.min_stretch(block, per_cell); }});
+  writer_.write(frame_source(simulation));
 }
 
 namespace {
@@ -100,7 +98,7 @@ void CheckpointObserver::observe(Simulation& simulation, const StepReport& repor
 
 void CheckpointObserver::write(const Simulation& simulation) {
   if (written_at_ == simulation.time()) return;
-  writer_.write(simulation.node_state(), simulation.state_scalars());
+  writer_.write(simulation.node_state(), simulation.flow_state(), simulation.state_scalars());
   written_at_ = simulation.time();
   written_at_wall_ = MPI_Wtime();
 }

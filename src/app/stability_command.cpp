@@ -155,7 +155,7 @@ int stability_command(MPI_Comm comm, const StabilityArguments& arguments, std::o
   auto& simulation = *built.simulation;
   if (!run.restart.empty()) {
     const auto state = read_checkpoint(simulation.mesh(), run.restart, scene.identity);
-    simulation.restore(state.nodes(), state.scalars);
+    simulation.restore(state.nodes(), state.scalars, state.flow);
   }
   auto x = rest_state(simulation.mesh());
   const bool deformed = is_deformed(simulation, x);

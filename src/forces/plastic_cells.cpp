@@ -16,6 +16,8 @@ namespace evert {
 using kernels::goal_numbers;
 using kernels::plastic_numbers;
 
+static_assert(PlasticCells::numbers_per_point == plastic_numbers);
+
 PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
     : block_(block),
       layout_(rest_layout(block.shape_data, block.element.nodes(), block.element.points())),

@@ -25,6 +25,8 @@ System::System(const DistributedMesh& distributed, ElasticForces& elastic_forces
 }
 
 void System::update_forces(double t) {
+  elastic.set_times(forces_time, t);
+  forces_time = t;
   elastic.update(x, f);
   add_loads(t, f);
   ++force_updates;

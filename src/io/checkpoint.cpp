@@ -67,6 +67,43 @@ void require_usable(const std::string& path, const std::string& fingerprint, Glo
   }
 }
 
+/// Numbers in a row of the table of flow, as many as the cells of any entry remember; 0 where none remembers
+/// any. The same on every rank.
+std::size_t width_of(const DistributedMesh& mesh, const FlowState& flow) {
+  std::uint64_t width = 0;
+  for (std::size_t e = 0; e < flow.size(); ++e)
+    if (!flow[e].empty())
+      width = std::max<std::uint64_t>(width, flow[e].size() / mesh.cells[e].global_ids.size());
+  MPI_Allreduce(MPI_IN_PLACE, &width, 1, MPI_UINT64_T, MPI_MAX, mesh.comm);
+  return width;
+}
+
+/// A row for every cell, in the order of `mesh.cells`.
+std::vector<double> as_rows(const DistributedMesh& mesh, const FlowState& flow, std::size_t width) {
+  std::vector<double> rows;
+  for (std::size_t e = 0; e < flow.size(); ++e) {
+    const std::size_t cells = mesh.cells[e].global_ids.size();
+    const std::size_t own = cells > 0 ? flow[e].size() / cells : 0;
+    for (std::size_t c = 0; c < cells; ++c) {
+      const auto numbers = std::span(flow[e]).subspan(own * c, own);
+      rows.insert(rows.end(), numbers.begin(), numbers.end());
+      rows.resize(rows.size() + width - own);
+    }
+  }
+  return rows;
+}
+
+/// The rows of each entry, at full width.
+FlowState from_rows(const DistributedMesh& mesh, std::span<const double> rows, std::size_t width) {
+  FlowState flow;
+  for (const auto& cells : mesh.cells) {
+    const std::size_t count = width * cells.global_ids.size();
+    flow.emplace_back(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count));
+    rows = rows.subspan(count);
+  }
+  return flow;
+}
+
 std::vector<StateScalar> read_scalars(const Hdf5File& file) {
   const auto names = file.attribute<std::vector<std::string>>("/", "scalar_names");
   const auto values = file.attribute<std::vector<double>>("/", "scalar_values");
@@ -84,16 +121,18 @@ CheckpointWriter::CheckpointWriter(const DistributedMesh& mesh, std::string path
       path_(std::move(path)),
       fingerprint_(std::move(fingerprint)),
       mesh_digest_(digest(mesh)),
-      order_(natural_node_order(mesh)) {
+      order_(natural_node_order(mesh)),
+      cells_(natural_cell_order(mesh)) {
   on_root(mesh.comm, [&] { require_writable(path_); });
 }
 
-void CheckpointWriter::write(const NodeState& nodes, std::span<const StateScalar> scalars) const {
+void CheckpointWriter::write(const NodeState& nodes, const FlowState& flow,
+                             std::span<const StateScalar> scalars) const {
   const PhaseScope phase(Phase::io);
   const std::string temporary = path_ + ".tmp";
   try {
     on_root(mesh_.comm, [&] { require_writable(temporary); });
-    write_file(temporary, nodes, scalars);
+    write_file(temporary, nodes, flow, scalars);
     on_every_rank(mesh_.comm, [&] { sync_file(temporary); });
     on_root(mesh_.comm, [&] { replace_file(temporary, path_); });
   } catch (const UserError&) {
@@ -102,12 +141,14 @@ void CheckpointWriter::write(const NodeState& nodes, std::span<const StateScalar
   }
 }
 
-void CheckpointWriter::write_file(const std::string& path, const NodeState& nodes,
+void CheckpointWriter::write_file(const std::string& path, const NodeState& nodes, const FlowState& flow,
                                   std::span<const StateScalar> scalars) const {
   auto file = Hdf5File::create(mesh_.comm, path);
   std::vector<std::string> names;
   std::vector<double> values;
-  auto bytes = mesh_.total_nodes * 72 + metadata_allowance + static_cast<std::int64_t>(fingerprint_.size());
+  const std::size_t flow_width = width_of(mesh_, flow);
+  auto bytes = mesh_.total_nodes * 72 + mesh_.total_cells * static_cast<std::int64_t>(8 * flow_width) +
+               metadata_allowance + static_cast<std::int64_t>(fingerprint_.size());
   for (const auto& [name, value] : scalars) {
     names.push_back(name);
     values.push_back(value);
@@ -120,14 +161,17 @@ void CheckpointWriter::write_file(const std::string& path, const NodeState& node
   file.set_attribute("/", "mesh_digest", as_attribute(mesh_digest_));
   file.set_attribute("/", "scalar_names", names);
   file.set_attribute("/", "scalar_values", values);
-  const auto write_table = [&](const std::string& table, std::span<const double> owned) {
-    const auto slice = order_.to_slices<double>(owned, 3);
-    file.write<double>(table, {order_.total(), 3}, rows_of(order_), slice);
-    file.set_attribute(table, "digest", as_attribute(digest(mesh_.comm, 3 * order_.first(), slice)));
+  const auto write_table = [&](const std::string& table, const NaturalOrder& order, std::size_t width,
+                               std::span<const double> owned) {
+    const auto slice = order.to_slices<double>(owned, width);
+    const auto columns = static_cast<GlobalIndex>(width);
+    file.write<double>(table, {order.total(), columns}, rows_of(order), slice);
+    file.set_attribute(table, "digest", as_attribute(digest(mesh_.comm, columns * order.first(), slice)));
   };
-  write_table("/positions", nodes.positions);
-  write_table("/velocities", nodes.velocities);
-  write_table("/velocity_changes", nodes.velocity_changes);
+  write_table("/positions", order_, 3, nodes.positions);
+  write_table("/velocities", order_, 3, nodes.velocities);
+  write_table("/velocity_changes", order_, 3, nodes.velocity_changes);
+  if (flow_width > 0) write_table("/flow", cells_, flow_width, as_rows(mesh_, flow, flow_width));
   file.close();
 }
 
@@ -138,15 +182,23 @@ CheckpointState read_checkpoint(const DistributedMesh& mesh, const std::string& 
   on_root(mesh.comm, [&] { require_usable(path, fingerprint, mesh.total_nodes, mesh_digest); });
   const auto order = natural_node_order(mesh);
   const auto file = Hdf5File::open(mesh.comm, path, Hdf5File::Access::read);
-  const auto read_table = [&](const std::string& table) {
-    const auto slice = file.read<double>(table, rows_of(order));
-    if (as_attribute(digest(mesh.comm, 3 * order.first(), slice)) !=
+  const auto read_table = [&](const std::string& table, const NaturalOrder& of_table, std::size_t width) {
+    const auto slice = file.read<double>(table, rows_of(of_table));
+    if (as_attribute(digest(mesh.comm, static_cast<GlobalIndex>(width) * of_table.first(), slice)) !=
         file.attribute<std::int64_t>(table, "digest"))
       throw UserError("checkpoint '" + path + "' is damaged: the values of '" + table + "' have changed");
-    return order.to_owners<double>(slice, 3);
+    return of_table.to_owners<double>(slice, width);
   };
-  return {read_table("/positions"), read_table("/velocities"), read_table("/velocity_changes"),
-          read_scalars(file)};
+  CheckpointState state{.positions = read_table("/positions", order, 3),
+                        .velocities = read_table("/velocities", order, 3),
+                        .velocity_changes = read_table("/velocity_changes", order, 3),
+                        .flow = {},
+                        .scalars = read_scalars(file)};
+  if (file.contains("/flow")) {
+    const auto width = static_cast<std::size_t>(file.shape_of("/flow").width);
+    state.flow = from_rows(mesh, read_table("/flow", natural_cell_order(mesh), width), width);
+  }
+  return state;
 }
 
 }  // namespace evert

@@ -46,6 +46,11 @@ constexpr std::array columns{
     Column{"damping_impulse_z [N s]", [](const Measurements& m) { return m.damping_impulse[2]; }},
     Column{"inverted_points", [](const Measurements& m) { return static_cast<double>(m.inverted_points); }},
 };
+constexpr std::array flow_columns{
+    Column{"plastic_work [J]", [](const Measurements& m) { return m.plastic_work; }},
+    Column{"control_work [J]", [](const Measurements& m) { return m.control_work; }},
+    Column{"goal_distance [-]", [](const Measurements& m) { return m.goal_distance; }},
+};
 // clang-format on
 
 std::string header(const std::vector<std::string>& names) {
@@ -54,9 +59,15 @@ std::string header(const std::vector<std::string>& names) {
   return text + '\n';
 }
 
-std::vector<std::string> energy_columns() {
+std::vector<Column> energy_columns(bool with_flow) {
+  std::vector<Column> all(columns.begin(), columns.end());
+  if (with_flow) all.insert(all.end(), flow_columns.begin(), flow_columns.end());
+  return all;
+}
+
+std::vector<std::string> energy_names(bool with_flow) {
   std::vector<std::string> names;
-  for (const auto& column : columns) names.emplace_back(column.name);
+  for (const auto& column : energy_columns(with_flow)) names.emplace_back(column.name);
   return names;
 }
 
@@ -133,15 +144,16 @@ void CsvLog::write(std::int64_t step, double time, std::span<const double> value
   });
 }
 
-EnergyLog::EnergyLog(MPI_Comm comm, const std::string& path) : log_(comm, path, energy_columns()) {}
+EnergyLog::EnergyLog(MPI_Comm comm, const std::string& path, bool with_flow)
+    : log_(comm, path, energy_names(with_flow)), with_flow_(with_flow) {}
 
-EnergyLog EnergyLog::continue_from(MPI_Comm comm, const std::string& path, double time) {
-  return EnergyLog(CsvLog::continue_from(comm, path, energy_columns(), time));
+EnergyLog EnergyLog::continue_from(MPI_Comm comm, const std::string& path, double time, bool with_flow) {
+  return {CsvLog::continue_from(comm, path, energy_names(with_flow), time), with_flow};
 }
 
 void EnergyLog::write(std::int64_t step, double time, const Measurements& measurements) {
-  std::array<double, columns.size()> values{};
-  for (std::size_t i = 0; i < columns.size(); ++i) values[i] = columns[i].value(measurements);
+  std::vector<double> values;
+  for (const auto& column : energy_columns(with_flow_)) values.push_back(column.value(measurements));
   log_.write(step, time, values);
 }
 

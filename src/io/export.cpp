@@ -53,6 +53,8 @@ void export_vtu(const RunReader& run, std::size_t frame, const std::filesystem::
   mesh.nodes = run.positions(frame);
   std::vector<CellField> cell_fields;
   if (run.has(frame, "min_stretch")) cell_fields.push_back({"min_stretch", run.min_stretch(frame)});
+  for (const char* field : {"plastic_strain", "plastic_volume"})
+    if (run.has(frame, field)) cell_fields.push_back({field, run.cell_field(frame, field)});
   if (run.has(frame, "inverted")) {
     const auto flags = run.inverted(frame);
     cell_fields.push_back({"inverted", std::vector<std::int32_t>(flags.begin(), flags.end())});

@@ -103,7 +103,8 @@ FrameWriter FrameWriter::continue_from(const DistributedMesh& mesh, const std::s
     writer.frames_.push_back(
         {group,
          written,
-         {has("velocity"), has("min_stretch"), has("inverted"), writer.file_.contains(run_layout::rank)},
+         {has("velocity"), has("min_stretch"), has("inverted"), writer.file_.contains(run_layout::rank),
+          has("plastic_strain"), has("plastic_volume")},
          writer.obstacles_.known(writer.file_, group)});
   }
   writer.write_ranks(false);
@@ -200,13 +201,19 @@ void FrameWriter::write_cells(const std::string& table, const std::vector<T>& va
   file_.write<T>(table, {cells_.total(), 1}, rows_of(cells_), cells_.template to_slices<T>(values));
 }
 
-void FrameWriter::write_stretches(const std::string& group, const FrameSource& source) {
-  std::vector<double> stretches;
+std::vector<double> FrameWriter::cell_values(const FrameSource::CellValues& of_block,
+                                             double otherwise) const {
+  std::vector<double> all;
   for (std::size_t block = 0; block < mesh_.cells.size(); ++block) {
-    std::vector<double> of_block(mesh_.cells[block].global_ids.size());
-    source.min_stretch(block, of_block);
-    stretches.insert(stretches.end(), of_block.begin(), of_block.end());
+    std::vector<double> values(mesh_.cells[block].global_ids.size(), otherwise);
+    of_block(block, values);
+    all.insert(all.end(), values.begin(), values.end());
   }
+  return all;
+}
+
+void FrameWriter::write_stretches(const std::string& group, const FrameSource& source) {
+  const auto stretches = cell_values(source.min_stretch, 0);
   if (fields_.min_stretch) write_cells(group + "/min_stretch", stretches);
   if (!fields_.inversion) return;
   std::vector<std::uint8_t> inverted;
@@ -216,7 +223,8 @@ void FrameWriter::write_stretches(const std::string& group, const FrameSource& s
 
 std::int64_t FrameWriter::frame_bytes() const {
   return mesh_.total_nodes * (fields_.velocity ? 48 : 24) +
-         mesh_.total_cells * ((fields_.min_stretch ? 8 : 0) + (fields_.inversion ? 1 : 0)) +
+         mesh_.total_cells * ((fields_.min_stretch ? 8 : 0) + (fields_.inversion ? 1 : 0) +
+                              (fields_.plastic_strain ? 8 : 0) + (fields_.plastic_volume ? 8 : 0)) +
          obstacles_.bytes();
 }
 
@@ -230,6 +238,8 @@ void FrameWriter::write(const FrameSource& source) {
   write_nodes(group + "/positions", source.positions);
   if (fields_.velocity) write_nodes(group + "/velocity", source.velocities);
   if (fields_.min_stretch || fields_.inversion) write_stretches(group, source);
+  if (fields_.plastic_strain) write_cells(group + "/plastic_strain", cell_values(source.plastic_strain, 0));
+  if (fields_.plastic_volume) write_cells(group + "/plastic_volume", cell_values(source.plastic_volume, 1));
   auto obstacles = obstacles_.write(file_, group);
   file_.flush();
   frames_.push_back({group, source.time, fields_, std::move(obstacles)});

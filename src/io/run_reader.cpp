@@ -97,6 +97,10 @@ std::vector<double> RunReader::min_stretch(std::size_t frame) const {
   return cell_values<double>(table_of(frame, "min_stretch"));
 }
 
+std::vector<double> RunReader::cell_field(std::size_t frame, const std::string& name) const {
+  return cell_values<double>(table_of(frame, name));
+}
+
 std::vector<std::uint8_t> RunReader::inverted(std::size_t frame) const {
   return cell_values<std::uint8_t>(table_of(frame, "inverted"));
 }

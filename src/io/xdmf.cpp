@@ -88,6 +88,8 @@ class Writer {
       attribute("velocity", "Vector", "Node", {frame.group + "/velocity", nodes_, 3, "Float", 8});
     if (frame.fields.min_stretch) of_cells("min_stretch", frame.group + "/min_stretch", "Float", 8);
     if (frame.fields.inversion) of_cells("inverted", frame.group + "/inverted", "UChar", 1);
+    if (frame.fields.plastic_strain) of_cells("plastic_strain", frame.group + "/plastic_strain", "Float", 8);
+    if (frame.fields.plastic_volume) of_cells("plastic_volume", frame.group + "/plastic_volume", "Float", 8);
     of_cells("region", run_layout::region, "Int", 4);
     if (frame.fields.rank) of_cells("rank", run_layout::rank, "Int", 4);
     out_ << "      </Grid>\n";

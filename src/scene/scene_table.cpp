@@ -23,7 +23,11 @@ const Table<OutputConfig>& output_table() {
                          {"min_stretch", OutputField::min_stretch,
                           "per cell, smallest signed principal stretch [-]"},
                          {"inversion", OutputField::inversion, "per cell, 1 where inverted"},
-                         {"rank", OutputField::rank, "per cell, the MPI rank that computes it"}})),
+                         {"rank", OutputField::rank, "per cell, the MPI rank that computes it"},
+                         {"plastic_strain", OutputField::plastic_strain,
+                          "per cell, plastic strain as in tension [-]"},
+                         {"plastic_volume", OutputField::plastic_volume,
+                          "per cell, volume that plastic flow has left of one [-]"}})),
                     "[velocity, inversion]", "Written besides the positions.")
           .optional("energy_log", &OutputConfig::energy_log, number("s", at_least(0)), "0.01",
                     "Simulated time between rows of energies and momenta in a CSV file, 0 for every step; "

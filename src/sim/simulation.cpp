@@ -298,17 +298,32 @@ Measurements Simulation::measure() const {
       angular += cross(body.center(), of_body) + body.angular_momentum();
     }
   }
-  std::array<double, 9> sums{kinetic,     elastic_.energy(system_.x),
-                             potential,   momentum[0],
-                             momentum[1], momentum[2],
-                             angular[0],  angular[1],
-                             angular[2]};
+  const auto plastic = elastic_.plastic_state();
+  std::array<double, 13> sums{kinetic,
+                              elastic_.energy(system_.x),
+                              potential,
+                              momentum[0],
+                              momentum[1],
+                              momentum[2],
+                              angular[0],
+                              angular[1],
+                              angular[2],
+                              plastic.work,
+                              plastic.control_work,
+                              plastic.goal_square,
+                              plastic.goal_distance_square};
   sum_over_ranks(mesh_.comm, sums);
   auto impulses = as_array(system_.impulses);
   sum_over_ranks(mesh_.comm, impulses);
   const auto since_restart = as_impulses(impulses);
-  Measurements all{
-      sums[0], sums[1], sums[2], {sums[3], sums[4], sums[5]}, {sums[6], sums[7], sums[8]}, {}, {}, {}, {}, 0};
+  Measurements all{.kinetic_energy = sums[0],
+                   .elastic_energy = sums[1],
+                   .gravitational_energy = sums[2],
+                   .momentum = {sums[3], sums[4], sums[5]},
+                   .angular_momentum = {sums[6], sums[7], sums[8]}};
+  all.plastic_work = sums[9];
+  all.control_work = sums[10];
+  if (sums[11] > 0) all.goal_distance = std::sqrt(sums[12] / sums[11]);
   all.gravity_impulse = impulses_before_.gravity + since_restart.gravity;
   all.contact_impulse = impulses_before_.contact + since_restart.contact;
   all.constraint_impulse = impulses_before_.constraint + since_restart.constraint;
@@ -379,7 +394,14 @@ std::vector<StateScalar> Simulation::state_scalars() const {
   return scalars;
 }
 
-void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> scalars) {
+FlowState Simulation::flow_state() const {
+  FlowState state;
+  for (std::size_t e = 0; e < mesh_.cells.size(); ++e) state.push_back(elastic_.flow(e));
+  return state;
+}
+
+void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> scalars,
+                         const FlowState& flow) {
   const auto value = [&](const std::string& name) {
     for (const auto& [key, number] : scalars)
       if (key == name) return number;
@@ -404,6 +426,7 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
 
   steps_ = steps;
   system_.time = time;
+  system_.forces_time = time;
   const auto replace = [](NodeField& field, std::span<const double> values) {
     std::copy(values.begin(), values.end(), field.owned().begin());
     field.touched();
@@ -417,6 +440,7 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   std::fill(system_.obstacle_impulses.begin(), system_.obstacle_impulses.end(), ObstacleImpulse{});
   for (const auto& obstacle : obstacles()) obstacle->move_to({.end = system_.time, .dt = 1});
   rigid_.restore(bodies, time);
+  for (std::size_t e = 0; e < flow.size(); ++e) elastic_.set_flow(e, flow[e]);
   forces_stale_ = true;
   while (events_done_ < std::min(events_done, events_.size())) events_[events_done_++].apply(*this);
   refresh_forces();

@@ -4,6 +4,7 @@
 #include "evert/forces/mass_form.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@ struct ElasticProperties {
   Precision precision = Precision::full;
   /// A force −a m v on every node, a in [1/s]; empty: none, and none later either.
   std::optional<double> mass_proportional_damping{};
+  std::optional<Plasticity> plasticity{};  ///< of isotropic models in double; empty: nothing flows
 };
 
 /// Cells of one entry of DistributedMesh::cells whose forces are of another kind than those of its region.
@@ -28,6 +30,14 @@ struct SeparateCells {
   std::size_t entry = 0;
   std::vector<LocalIndex> cells{};        ///< their numbers in the entry, ascending
   std::unique_ptr<ElasticBlock> block{};  ///< of these cells in this order; null without cells
+};
+
+/// The flow of bodies at a time, of this rank.
+struct PlasticState {
+  double work = 0;                  ///< that has gone into flow [J], ≥ 0
+  double control_work = 0;          ///< of controls on the elastic energy [J]
+  double goal_square = 0;           ///< ∫‖log S‖² dV of the goals, S the stretch of F_p [m³]
+  double goal_distance_square = 0;  ///< ∫‖log S − that of the goal‖² dV
 };
 
 class ElasticForces {
@@ -40,6 +50,8 @@ class ElasticForces {
   /// Collective. Brings the ghosts of `x` up to date, then `f` = elastic forces at x [N], summed over ranks
   /// on owned nodes; C(x) is kept for apply_damping.  PHYSICS 5: F and its SVD once per step, here
   void update(NodeField& x, NodeField& f);
+  /// Not collective. The times of the last update and of the next one [s], which may let points flow.
+  void set_times(double last, double next);
 
   /// Collective. `out` += factor · C v on owned nodes; updates the ghosts of `v`. The ghosts of `out` are
   /// scratch.
@@ -70,6 +82,25 @@ class ElasticForces {
   [[nodiscard]] double max_strain_rate(const NodeField& x, const NodeField& v) const;
   /// Smallest signed stretch per cell of an entry of DistributedMesh::cells.
   void min_stretch(const NodeField& x, std::size_t entry, std::span<double> per_cell) const;
+
+  /// True where points of any rank can flow.
+  [[nodiscard]] bool may_flow() const;
+  [[nodiscard]] PlasticState plastic_state() const;
+  /// Per cell of an entry of DistributedMesh::cells, nothing where its region cannot flow: plastic strain as
+  /// in tension, and det F_p.
+  void equivalent_plastic_strain(std::size_t entry, std::span<double> per_cell) const;
+  void plastic_volume_ratio(std::size_t entry, std::span<double> per_cell) const;
+  /// Numbers that each cell of an entry remembers of its flow, 0 where it cannot flow; and all of them, cell
+  /// after cell.
+  [[nodiscard]] std::size_t flow_numbers(std::size_t entry) const;
+  [[nodiscard]] std::vector<double> flow(std::size_t entry) const;
+  /// The rows of cells may be longer.
+  void set_flow(std::size_t entry, std::span<const double> numbers);
+  /// Not collective. Controls the flow of a region: `position(entry, cell, node of the cell)` as in
+  /// PlasticCells::set_goal. Returns the global numbers of this rank's cells whose goal is not allowed.
+  using GoalPosition = std::function<Vec3d(std::size_t entry, LocalIndex cell, std::size_t node)>;
+  [[nodiscard]] std::vector<GlobalIndex> set_goal(std::int32_t region, const PlasticControl& control,
+                                                  const GoalPosition& position);
 
   /// Lumped masses of the owned nodes [kg], whatever M is.
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
@@ -112,6 +143,10 @@ class ElasticForces {
  private:
   [[nodiscard]] bool is_of_region(std::size_t block, std::int32_t region) const;
   /// Of the cells of an entry that are in `cells`, ascending.
+  /// Calls `work(plastic cells, number in the block, cell of the entry)` for all cells of an entry that can
+  /// flow.
+  template <class Work>
+  void for_each_flowing(std::size_t entry, Work&& work) const;
   [[nodiscard]] std::unique_ptr<ElasticBlock> make_block(std::size_t entry,
                                                          std::span<const LocalIndex> cells) const;
   [[nodiscard]] std::vector<double> densities() const;  // per region

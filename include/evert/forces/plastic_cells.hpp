@@ -42,6 +42,7 @@ class PlasticCells {
 
   /// Numbers that a cell remembers, and these; they mean the same in any block of the same cell, so that they
   /// can be kept and brought back bit by bit.
+  static constexpr std::size_t numbers_per_point = 9;
   [[nodiscard]] std::size_t numbers_per_cell() const;
   void get(LocalIndex cell, std::span<double> numbers) const;
   void set(LocalIndex cell, std::span<const double> numbers);

@@ -27,11 +27,12 @@ struct System {
 
   ShapeProjection* projection = nullptr;  ///< of a filter with `paper` constraints; null: none
 
-  NodeField x;         ///< positions [m]; ghosts are up to date between steps
-  NodeField v;         ///< velocities [m/s]
-  NodeField v_change;  ///< what the last half step added to v: where the next solve looks first [m/s]
-  NodeField f;         ///< elastic forces and weight at x, owned nodes [N]
-  double time = 0;     ///< [s]
+  NodeField x;             ///< positions [m]; ghosts are up to date between steps
+  NodeField v;             ///< velocities [m/s]
+  NodeField v_change;      ///< what the last half step added to v: where the next solve looks first [m/s]
+  NodeField f;             ///< elastic forces and weight at x, owned nodes [N]
+  double time = 0;         ///< [s]
+  double forces_time = 0;  ///< of the last update_forces() [s]: what may flow has had since then to
   std::uint64_t force_updates =
       0;  ///< counts update_forces(), so that what depends on C(x) knows when it is stale
 
@@ -53,8 +54,8 @@ struct System {
 
   [[nodiscard]] std::span<const double> masses() const { return elastic.masses(); }
   [[nodiscard]] std::span<const double> mass_row_sums() const { return elastic.mass_row_sums(); }
-  /// Collective. f = elastic forces at x and loads at `t` [s], and C(x). To be called whenever x, a material
-  /// or gravity changes.
+  /// Collective. f = elastic forces at x and loads at `t` [s], and C(x); what yields at x flows. To be called
+  /// whenever x, a material or gravity changes.
   void update_forces(double t);
   /// Collective. Before a solve of a step of `dt` [s] that starts from the present forces: brings
   /// implicit_strains up to date.

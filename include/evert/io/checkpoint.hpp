@@ -13,6 +13,7 @@ namespace evert {
 /// What a checkpoint brings back, in this rank's order.
 struct CheckpointState {
   std::vector<double> positions, velocities, velocity_changes;  ///< see NodeState
+  FlowState flow;
   std::vector<StateScalar> scalars;
 
   [[nodiscard]] NodeState nodes() const { return {positions, velocities, velocity_changes}; }
@@ -27,10 +28,10 @@ class CheckpointWriter {
   CheckpointWriter(const DistributedMesh& mesh, std::string path, std::string fingerprint);
 
   /// The scalars are the same on all ranks.
-  void write(const NodeState& nodes, std::span<const StateScalar> scalars) const;
+  void write(const NodeState& nodes, const FlowState& flow, std::span<const StateScalar> scalars) const;
 
  private:
-  void write_file(const std::string& path, const NodeState& nodes,
+  void write_file(const std::string& path, const NodeState& nodes, const FlowState& flow,
                   std::span<const StateScalar> scalars) const;
 
   const DistributedMesh& mesh_;
@@ -38,6 +39,7 @@ class CheckpointWriter {
   std::string fingerprint_;
   std::uint64_t mesh_digest_;
   NaturalOrder order_;
+  NaturalOrder cells_;
 };
 
 /// Collective. Reads a checkpoint of the scene and mesh, written on any number of ranks. Throws UserError on

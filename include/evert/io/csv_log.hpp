@@ -40,16 +40,19 @@ class CsvLog {
   std::unique_ptr<std::FILE, Close> file_;  // on rank 0
 };
 
-/// The log of energies, momenta and impulses. Collective, as CsvLog.
+/// The log of energies, momenta and impulses, and `with_flow` of the work on plastic flow and how far it is
+/// from its goal. Collective, as CsvLog.
 class EnergyLog {
  public:
-  EnergyLog(MPI_Comm comm, const std::string& path);
-  [[nodiscard]] static EnergyLog continue_from(MPI_Comm comm, const std::string& path, double time);
+  EnergyLog(MPI_Comm comm, const std::string& path, bool with_flow = false);
+  [[nodiscard]] static EnergyLog continue_from(MPI_Comm comm, const std::string& path, double time,
+                                               bool with_flow = false);
   void write(std::int64_t step, double time, const Measurements& measurements);
 
  private:
-  explicit EnergyLog(CsvLog log) : log_(std::move(log)) {}
+  EnergyLog(CsvLog log, bool with_flow) : log_(std::move(log)), with_flow_(with_flow) {}
   CsvLog log_;
+  bool with_flow_;
 };
 
 /// What each obstacle gave to nodes and rigid bodies, and where it is. Collective, as CsvLog.

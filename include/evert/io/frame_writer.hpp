@@ -16,7 +16,7 @@
 ///   /mesh/rest_positions [nodes, 3] [m]   /mesh/cells/<type> [cells of the type, nodes of a cell]
 ///   /mesh/region, /mesh/rank [cells]      /mesh/mixed: all cells as XDMF wants them, with several types only
 ///   /frames/<number>/positions [nodes, 3] [m], velocity [nodes, 3] [m/s], min_stretch [cells] [-],
-///   inverted [cells] 0 or 1; attributes time [s] and step
+///   inverted [cells] 0 or 1, plastic_strain, plastic_volume [cells] [-]; attributes time [s] and step
 /// and the surfaces of the obstacles, as obstacle_frames.hpp says.
 namespace evert {
 
@@ -28,6 +28,8 @@ struct FrameFields {
   bool min_stretch = true;
   bool inversion = true;
   bool rank = true;
+  bool plastic_strain = false;
+  bool plastic_volume = false;
 };
 
 /// What one frame shows, by reference.
@@ -36,8 +38,11 @@ struct FrameSource {
   std::int64_t step = 0;
   const NodeField& positions;   ///< [m]
   const NodeField& velocities;  ///< [m/s]
-  /// Fills the smallest signed principal stretch per cell of DistributedMesh::cells[block].
-  std::function<void(std::size_t block, std::span<double> per_cell)> min_stretch;
+  /// Fills a number per cell of DistributedMesh::cells[block].
+  using CellValues = std::function<void(std::size_t block, std::span<double> per_cell)>;
+  CellValues min_stretch;       ///< smallest signed principal stretch
+  CellValues plastic_strain{};  ///< as in tension; leaves cells that cannot flow as they are
+  CellValues plastic_volume{};  ///< det F_p; the same
 };
 
 /// The present state of a simulation, which must outlive the result.
@@ -79,6 +84,8 @@ class FrameWriter {
   void write_nodes(const std::string& table, const NodeField& field);
   template <class T>
   void write_cells(const std::string& table, const std::vector<T>& values);
+  [[nodiscard]] std::vector<double> cell_values(const FrameSource::CellValues& of_block,
+                                                double otherwise) const;
   void write_stretches(const std::string& group, const FrameSource& source);
   void write_xdmf() const;
   void reserve(std::int64_t bytes) const;

@@ -46,6 +46,8 @@ class RunReader {
   [[nodiscard]] std::vector<Vec3d> positions(std::size_t frame) const;     ///< [m]
   [[nodiscard]] std::vector<Vec3d> velocities(std::size_t frame) const;    ///< [m/s]
   [[nodiscard]] std::vector<double> min_stretch(std::size_t frame) const;  ///< [-], negative where inverted
+  /// Any field of numbers per cell.
+  [[nodiscard]] std::vector<double> cell_field(std::size_t frame, const std::string& name) const;
   [[nodiscard]] std::vector<std::uint8_t> inverted(std::size_t frame) const;
 
   [[nodiscard]] std::vector<RunObstacle> obstacles() const;

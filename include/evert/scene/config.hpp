@@ -253,7 +253,7 @@ struct EventConfig {
 
 // --- the run
 
-enum class OutputField { velocity, min_stretch, inversion, rank };
+enum class OutputField { velocity, min_stretch, inversion, rank, plastic_strain, plastic_volume };
 
 struct OutputConfig {
   std::string directory;                    ///< runs/<name> unless given; relative to the working directory

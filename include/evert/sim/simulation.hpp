@@ -19,6 +19,10 @@ struct Measurements {
   double kinetic_energy = 0;
   double elastic_energy = 0;
   double gravitational_energy = 0;
+  double plastic_work = 0;  ///< that has gone into plastic flow since the start, ≥ 0
+  double control_work = 0;  ///< of the control of flow on the elastic energy since the start
+  double goal_distance =
+      0;  ///< rms of log S − that of its goal, over the rms of the latter, S the stretch of F_p [-]
   Vec3d momentum{};
   Vec3d angular_momentum{};         ///< about the origin
   Vec3d gravity_impulse{};          ///< accumulated since the start [N s]
@@ -37,6 +41,10 @@ struct NodeState {
   std::span<const double> velocities;        ///< [m/s]
   std::span<const double> velocity_changes;  ///< System::v_change [m/s]
 };
+
+/// What the cells of each entry of DistributedMesh::cells remember of their flow, see ElasticForces::flow;
+/// empty where they cannot flow.
+using FlowState = std::vector<std::vector<double>>;
 
 /// A value that a checkpoint keeps besides those; restored bit by bit.
 using StateScalar = std::pair<std::string, double>;
@@ -90,7 +98,8 @@ class Simulation {
   [[nodiscard]] const ImplicitStrains* implicit_strains() const { return implicit_strains_.get(); }
   /// Of a filter with `paper` constraints; null: none.
   [[nodiscard]] const ShapeProjection* projection() const { return projection_.get(); }
-  /// Smallest signed principal stretch per owned cell, `block` counting as in DistributedMesh::cells.
+  /// Smallest signed principal stretch per owned cell, of the elastic deformation where it can flow, `block`
+  /// counting as in DistributedMesh::cells.
   void min_stretch(std::size_t block, std::span<double> per_cell) const;
 
   /// Sums over all ranks of energies, momenta and impulses.
@@ -112,11 +121,12 @@ class Simulation {
   void set_friction(const std::string& obstacle, double coefficient);
 
   [[nodiscard]] NodeState node_state() const;
+  [[nodiscard]] FlowState flow_state() const;
   /// All other state (time, steps, step control, impulses). Impulses are summed over ranks.
   [[nodiscard]] std::vector<StateScalar> state_scalars() const;
-  /// Replaces the whole state, by what node_state() and state_scalars() gave. Events up to the restored time
-  /// are applied. Throws UserError when a scalar is missing.
-  void restore(const NodeState& nodes, std::span<const StateScalar> scalars);
+  /// Replaces the whole state, by what node_state(), flow_state() and state_scalars() gave. Events up to the
+  /// restored time are applied. Throws UserError when a scalar is missing.
+  void restore(const NodeState& nodes, std::span<const StateScalar> scalars, const FlowState& flow = {});
 
  private:
   void apply_due_events();
