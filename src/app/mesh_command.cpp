@@ -34,6 +34,7 @@ evert mesh generate SHAPE ... -o OUT     make a mesh and print its quality; leng
   figure       [-height H]
   mesh         -surface FILE [-scale S]     what a closed surface (.obj, .stl, .ply, .off) encloses
   union, intersection, difference   -of '[{shape: ..., ...}, ...]'
+  round_bar    -radius R -length L [-inner_radius R] [-quarter N] [-rings N] [-layers N]     hexahedra, no -edge_length
   With bad elements, for the modal filter:
   wedge_stack  [-edge_length E] [-edge_ratio R] [-layers N]
   cut_cube     [-size S] [-cells N] [-normal X,Y,Z] [-through X,Y,Z] [-snap S]

@@ -402,7 +402,10 @@ void ElasticForces::separate(std::vector<SeparateCells> separate_cells) {
 void ElasticForces::set_properties(std::int32_t region, const ElasticProperties& properties) {
   properties_[static_cast<std::size_t>(region)] = properties;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    if (is_of_region(i, region)) blocks_[i]->set_material(properties.material, properties.damping);
+    if (is_of_region(i, region)) {
+      blocks_[i]->set_material(properties.material, properties.damping);
+      if (blocks_[i]->plastic() != nullptr) blocks_[i]->plastic()->set_law(*properties.plasticity);
+    }
   balance_masses(mesh_, halo_, masses_, blocks_);
   if (consistent_mass_ != nullptr) bound_consistent_step();
   if (damped_densities_.empty()) return;

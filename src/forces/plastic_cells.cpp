@@ -39,6 +39,8 @@ PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
              .drift = drift_.data()};
 }
 
+void PlasticCells::set_law(const Plasticity& law) { arrays_.law = law; }
+
 void PlasticCells::set_times(double last, double next) {
   arrays_.dt = next - last;
   const bool controlled = !goal_.empty() && next > control_.from && next <= control_.until;

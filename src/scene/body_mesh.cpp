@@ -27,6 +27,7 @@ Mesh make(const FilledShape& filled) {
   return mesh;
 }
 
+Mesh make(const RoundBar& bar) { return generate_round_bar(bar); }
 Mesh make(const WedgeStack& stack) { return generate_wedge_stack(stack); }
 Mesh make(const CutCube& cube) { return generate_cut_cube(cube); }
 Mesh make(const SliverBall& ball) { return generate_sliver_ball(ball); }

@@ -92,7 +92,9 @@ const Table<GroupConfig>& group_table() {
                     "{model: rotated, stiffness_proportional: 0.01}",
                     "Damping; {model: none} for a group without.")
           .optional("activation", &GroupConfig::activation, activation_type(), "[[0, 0], [0.5, 1]]",
-                    "Of its muscle.");
+                    "Of its muscle.")
+          .optional("plasticity", &GroupConfig::plasticity, table_of(plasticity_table()),
+                    "{yield_strain: 0.1}", "Permanent deformation.");
   return table;
 }
 
@@ -159,6 +161,8 @@ const Table<BodyConfig>& body_table() {
               "activation", &BodyConfig::activation, activation_type(), "[[0, 0], [0.5, 1]]",
               "Of muscle: a constant from 0 to 1, or a table of times and values, linear in between and "
               "constant outside. Without it muscle is not active.")
+          .optional("plasticity", &BodyConfig::plasticity, table_of(plasticity_table()),
+                    "{yield_strain: 0.05}", "Permanent deformation; without it the body is elastic.")
           .optional("precision", &BodyConfig::precision,
                     one_of<Precision>({{"double", Precision::full, "everything in double"},
                                        {"mixed", Precision::mixed,
@@ -169,7 +173,8 @@ const Table<BodyConfig>& body_table() {
           .optional("groups", &BodyConfig::groups, named(group_table()), "{tendon: {density: 1200}}",
                     "Volume groups of the mesh that differ from the body, by name.")
           .then(drop_what_is_none)
-          .then(check_fibres);
+          .then(check_fibres)
+          .then(check_plasticity);
   return table;
 }
 

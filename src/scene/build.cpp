@@ -5,6 +5,7 @@
 #include "evert/scene/load.hpp"
 #include "evert/scene/material.hpp"
 
+#include "goals.hpp"
 #include "obstacles.hpp"
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,18 @@ std::optional<double> mass_damping_of(const std::optional<DampingConfig>& config
   if (!config) return {};
   if (config->mass_ratio) return 4 * std::numbers::pi * config->frequency * *config->mass_ratio;
   return config->mass_proportional;
+}
+
+std::optional<Plasticity> plasticity_of(const std::optional<PlasticityConfig>& config,
+                                        const MaterialConfig& material) {
+  if (!config) return {};
+  const double mu = lame_of(material).mu;
+  const double yield =
+      config->yield_strain ? *config->yield_strain : Plasticity::yield_of_stress(*config->yield_stress, mu);
+  const double hardening = config->hardening_modulus
+                               ? Plasticity::hardening_of_modulus(*config->hardening_modulus, mu)
+                               : config->hardening.value_or(0);
+  return Plasticity{yield, hardening, config->isochoric, config->relaxation_time, config->limit};
 }
 
 PrescribedNodes prescribed_of(const ConstraintConfig& config, const LocalNodeSet& nodes) {
@@ -153,14 +166,16 @@ ElasticProperties properties_of(const BodyConfig& body, int group) {
   auto density = body.density;
   auto material = body.material;
   auto damping = body.damping;
+  auto plasticity = body.plasticity;
   if (group >= 0) {
     const auto& own = body.groups[static_cast<std::size_t>(group)];
     density = own.density.value_or(density);
     material = own.material.value_or(material);
     if (own.damping) damping = own.damping;
+    if (own.plasticity) plasticity = own.plasticity;
   }
-  return {density, material_of(material), damping_of(damping, material), body.precision,
-          mass_damping_of(damping)};
+  return {density,        material_of(material),    damping_of(damping, material),
+          body.precision, mass_damping_of(damping), plasticity_of(plasticity, material)};
 }
 
 BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
@@ -180,6 +195,7 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
   definition.obstacles = make_obstacles(comm, scene);
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
     definition.prescribed.push_back(prescribed_of(scene.constraints[c], mesh.node_sets[c]));
+  definition.goals = flow_goals(mesh, scene, whole);
   definition.activations = activations_of(scene, whole.region_body, whole.region_group);
   const auto changing = std::make_shared<SceneConfig>(scene);
   for (const auto& event : scene.events)

@@ -5,6 +5,7 @@
 #include "evert/scene/build.hpp"
 
 #include "fibres.hpp"
+#include "goals.hpp"
 #include "solid.hpp"
 #include <algorithm>
 #include <array>
@@ -30,15 +31,28 @@ Bounds bounds_of(std::span<const Vec3d> points) {
 }
 
 /// Fit, then scale, then rotate, then translate.
-void place(Mesh& mesh, const TransformConfig& transform) {
-  const auto bounds = bounds_of(mesh.nodes);
-  const auto size = bounds.upper - bounds.lower;
-  const auto center = transform.fit ? 0.5 * (bounds.lower + bounds.upper) : Vec3d{};
-  const double fit = transform.fit ? *transform.fit / std::max({size[0], size[1], size[2]}) : 1;
-  const auto turn = transform.rotate ? rotation_of(*transform.rotate) : identity<double>();
+struct Placement {
+  Vec3d center{};
+  double scale = 1;
+  Mat3d turn = identity<double>();
+  Vec3d translate{};
+
+  Placement(const Mesh& mesh, const TransformConfig& transform) : translate(transform.translate) {
+    const auto bounds = bounds_of(mesh.nodes);
+    const auto size = bounds.upper - bounds.lower;
+    if (transform.fit) center = 0.5 * (bounds.lower + bounds.upper);
+    scale = transform.scale * (transform.fit ? *transform.fit / std::max({size[0], size[1], size[2]}) : 1);
+    if (transform.rotate) turn = rotation_of(*transform.rotate);
+  }
+  void place(std::span<Vec3d> nodes) const {
+    for (auto& node : nodes) node = turn * (scale * (node - center)) + translate;
+  }
+};
+
+void place(Mesh& mesh, const Placement& placement) {
   for (auto& block : mesh.cells)
-    for (auto& vector : block.vectors) vector = turn * vector;
-  for (auto& node : mesh.nodes) node = turn * (transform.scale * fit * (node - center)) + transform.translate;
+    for (auto& vector : block.vectors) vector = placement.turn * vector;
+  placement.place(mesh.nodes);
 }
 
 /// Mean of the cells' corner means, weighted by the volume that the edges at the first corner span: exact for
@@ -108,12 +122,29 @@ Mesh source_mesh(const BodyConfig& body) {
   }
 }
 
-Mesh body_mesh(const BodyConfig& body) {
+/// Of a body whose mesh is not yet placed.
+BodyGoal placed_goal(const BodyConfig& body, const Mesh& mesh, const Placement& placement) {
+  auto goal =
+      read_goal(*body.plasticity->goal, mesh, placement.turn, "bodies." + body.name + ".plasticity.goal");
+  placement.place(goal.nodes);
+  if (body.order == 2 && !goal.nodes.empty()) {
+    Mesh shape = mesh;
+    shape.nodes = goal.nodes;
+    make_quadratic(shape);
+    goal.nodes = std::move(shape.nodes);
+  }
+  return goal;
+}
+
+/// The mesh of a body, and what its flow is led to.
+Mesh body_mesh(const BodyConfig& body, BodyGoal& goal) {
   Mesh mesh = source_mesh(body);
   if (const auto* file = std::get_if<FileMesh>(&body.mesh)) keep_groups(mesh, file->groups, body.name);
   drop_unused_nodes(mesh);
   if (mesh.cell_count() == 0) throw UserError("bodies." + body.name + ".mesh: no volume cell is left");
-  place(mesh, body.transform);
+  const Placement placement(mesh, body.transform);
+  if (body.plasticity && body.plasticity->goal) goal = placed_goal(body, mesh, placement);
+  place(mesh, placement);
   const auto* file = std::get_if<FileMesh>(&body.mesh);
   require_positive_volumes(mesh, file != nullptr ? file->path : "bodies." + body.name + ".mesh");
   try {
@@ -147,8 +178,26 @@ void set_fibre_directions(Mesh& mesh, const BodyConfig& body) {
   set_fibre_directions(mesh, body, with_fibres);
 }
 
+/// Cells of a body among those of their type.
+struct BlockPart {
+  CellType type;
+  GlobalIndex first, count;
+};
+
+/// Their numbers in the mesh, where all blocks are there.
+std::vector<GlobalIndex> cell_numbers(const Mesh& mesh, std::span<const BlockPart> parts) {
+  std::vector<GlobalIndex> numbers;
+  for (const auto& part : parts) {
+    GlobalIndex first = part.first;
+    for (const auto& block : mesh.cells)
+      if (block.type < part.type) first += block.size();
+    for (GlobalIndex c = 0; c < part.count; ++c) numbers.push_back(first + c);
+  }
+  return numbers;
+}
+
 /// Joins one body to the scene: nodes appended, cells into the block of their type, regions by material.
-void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig& body) {
+std::vector<BlockPart> append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig& body) {
   const auto groups = groups_of_regions(body, part);
   std::map<int, std::int32_t> region_of_group;
   const auto region = [&](int group) {
@@ -162,6 +211,7 @@ void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig
     }
     return entry->second;
   };
+  std::vector<BlockPart> parts;
   const auto first = scene.mesh.node_count();
   scene.mesh.nodes.insert(scene.mesh.nodes.end(), part.nodes.begin(), part.nodes.end());
   for (const auto& block : part.cells) {
@@ -170,6 +220,7 @@ void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig
         std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.type >= block.type; });
     if (place_of == all.end() || place_of->type != block.type)
       place_of = all.insert(place_of, {block.type, {}, {}});
+    parts.push_back({block.type, place_of->size(), block.size()});
     // Cells of bodies without fibres have the vector 0.
     if (!block.vectors.empty()) place_of->vectors.resize(place_of->region.size(), Vec3d{});
     place_of->vectors.insert(place_of->vectors.end(), block.vectors.begin(), block.vectors.end());
@@ -178,6 +229,7 @@ void append(SceneMesh& scene, const Mesh& part, int body_index, const BodyConfig
       place_of->region.push_back(region(groups[static_cast<std::size_t>(own)]));
     if (!place_of->vectors.empty()) place_of->vectors.resize(place_of->region.size(), Vec3d{});
   }
+  return parts;
 }
 
 /// The nodes a constraint names, as numbers of the scene's mesh.
@@ -217,13 +269,16 @@ NodeSet select_nodes(const ConstraintConfig& constraint, std::size_t number, con
 
 SceneMesh build_scene_mesh(const SceneConfig& scene) {
   SceneMesh all;
+  std::map<std::size_t, std::vector<BlockPart>> goal_blocks;  // by body
   all.mesh.node_sets.resize(scene.constraints.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
-    auto part = body_mesh(body);
+    all.goals.emplace_back();
+    auto part = body_mesh(body, all.goals.back());
     set_fibre_directions(part, body);
     const auto first = all.mesh.node_count();
-    append(all, part, static_cast<int>(b), body);
+    const auto blocks = append(all, part, static_cast<int>(b), body);
+    if (!all.goals.back().deformations.empty()) goal_blocks[b] = blocks;
     const auto bounds = bounds_of(part.nodes);
     all.bodies.push_back(
         {body.name, first, all.mesh.node_count(), bounds.lower, bounds.upper, center_of_volume(part)});
@@ -231,6 +286,7 @@ SceneMesh build_scene_mesh(const SceneConfig& scene) {
       if (scene.constraints[c].body == b)
         all.mesh.node_sets[c] = select_nodes(scene.constraints[c], c, part, first, body.name);
   }
+  for (const auto& [b, blocks] : goal_blocks) all.goals[b].cells = cell_numbers(all.mesh, blocks);
   return all;
 }
 

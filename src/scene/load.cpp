@@ -71,6 +71,13 @@ void resolve_paths(SceneConfig& scene, const Value& root) {
     if (auto* mesh = std::get_if<FileMesh>(&body.mesh))
       resolve_path(mesh->path, *written.find("file"), folder);
     if (auto* mesh = std::get_if<FilledShape>(&body.mesh)) resolve_paths(mesh->solid, written, folder);
+    if (body.plasticity && body.plasticity->goal) {
+      const auto& goal = *root.find("bodies")->find(body.name)->find("plasticity")->find("goal");
+      if (auto* mesh = std::get_if<MeshGoal>(&body.plasticity->goal->shape))
+        resolve_path(mesh->path, *goal.find("file"), folder);
+      if (auto* cells = std::get_if<DeformationGoal>(&body.plasticity->goal->shape))
+        resolve_path(cells->path, *goal.find("deformations"), folder);
+    }
   }
   for (auto& obstacle : scene.obstacles)
     resolve_paths(obstacle.shape.solid, *root.find("obstacles")->find(obstacle.name), folder);

@@ -115,6 +115,32 @@ const Table<WedgeStack>& wedge_stack() {
   return table;
 }
 
+const Table<RoundBar>& round_bar() {
+  static const auto table =
+      Table<RoundBar>(
+          "A bar or a tube of hexahedra around the y axis: a square of cells in the middle and rings around "
+          "it, or rings "
+          "alone. Node sets: y_min, y_max, surface.")
+          .required("radius", &RoundBar::radius, length(), "0.0032", "Of the bar.")
+          .required("length", &RoundBar::length, length(), "0.0324", "Along the y axis.")
+          .optional("inner_radius", &RoundBar::inner_radius, number("m", at_least(0)), "0.003",
+                    "Of a tube; 0: a bar.")
+          .optional("quarter", &RoundBar::quarter, integer(1, 10000), "6",
+                    "Cells along a quarter of the circumference.")
+          .optional("rings", &RoundBar::rings, integer(1, 10000), "6",
+                    "Cells from the square, or the inner radius, to the "
+                    "surface.")
+          .optional("layers", &RoundBar::layers, integer(0, 1000000), "40",
+                    "Cells along the axis; 0: about as long as they are wide.")
+          .then([](RoundBar& bar, const Value& map, const std::string& path) {
+            if (bar.inner_radius < bar.radius) return;
+            const auto& value = *map.find("inner_radius");
+            fail(value, join(path, "inner_radius"),
+                 shown(value) + " is not allowed: must be less than the radius");
+          });
+  return table;
+}
+
 const Table<CutCube>& cut_cube() {
   static const auto table =
       Table<CutCube>(
@@ -161,7 +187,8 @@ const Table<MeshConfig>& mesh_table() {
         .alternative_by_key("file", std::identity{}, file_mesh())
         .alternative("box", std::identity{}, box_mesh());
     add_filled_shapes(keys);
-    keys.alternative("wedge_stack", std::identity{}, wedge_stack())
+    keys.alternative("round_bar", std::identity{}, round_bar())
+        .alternative("wedge_stack", std::identity{}, wedge_stack())
         .alternative("cut_cube", std::identity{}, cut_cube())
         .alternative("sliver_ball", std::identity{}, sliver_ball());
     return keys;

@@ -12,6 +12,7 @@ namespace evert {
 [[nodiscard]] const schema::Table<BodyConfig>& body_table();
 [[nodiscard]] const schema::Table<DampingConfig>& damping_table();
 [[nodiscard]] const schema::Table<FibreConfig>& fibre_table();
+[[nodiscard]] const schema::Table<PlasticityConfig>& plasticity_table();
 [[nodiscard]] const schema::Table<RotationConfig>& rotation_table();
 [[nodiscard]] const schema::Table<ObstacleConfig>& obstacle_table();
 [[nodiscard]] const schema::Table<MotionConfig>& motion_table();
@@ -33,6 +34,9 @@ namespace evert {
 
 /// Throws unless fibres and activation are given exactly where a material of the body has them.
 void check_fibres(BodyConfig& body, const schema::Value& map, const std::string& path);
+
+/// Throws where a material of the body cannot flow as asked for.
+void check_plasticity(BodyConfig& body, const schema::Value& map, const std::string& path);
 
 /// Throws unless min <= max along every axis.
 void expect_ordered(const Vec3d& min, const Vec3d& max, const schema::Value& map, const std::string& path);

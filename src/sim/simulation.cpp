@@ -68,8 +68,22 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[9], values[10], values[11]}};
 }
 
+/// Throws UserError where flow and the way to advance do not go together.
+void require_steps_that_flow(const SimulationDefinition& definition) {
+  const bool flows = std::ranges::any_of(
+      definition.properties, [](const auto& of_region) { return of_region.plasticity.has_value(); });
+  if (!flows) return;
+  if (definition.method == IntegrationMethod::quasistatic)
+    throw UserError("plasticity: flow needs time, which 'integrator.method: quasistatic' has none of");
+  if (definition.filter && definition.filter->constraints != FilterConstraints::compliant)
+    throw UserError("filter: softened elements do not flow; with plasticity 'constraints' must be compliant");
+  if (definition.filter && !definition.goals.empty())
+    throw UserError("filter: does not go with a goal of plastic flow");
+}
+
 /// Contact, friction and schemes without solves know masses of nodes, and what is at rest knows none.
 MassForm possible_mass(const SimulationDefinition& definition) {
+  require_steps_that_flow(definition);
   if (definition.mass == MassForm::consistent &&
       (!definition.obstacles.empty() || definition.method != IntegrationMethod::newmark))
     throw UserError(
@@ -112,6 +126,31 @@ std::unique_ptr<ImplicitStrains> make_implicit_strains(const DistributedMesh& me
   return std::make_unique<ImplicitStrains>(mesh, elastic, *filter);
 }
 
+/// Collective. Throws UserError on all ranks, with some of the cells, where the goal is none that can be
+/// reached.
+void set_goal(ElasticForces& elastic, MPI_Comm comm, const FlowGoal& goal) {
+  constexpr std::size_t shown = 8;
+  constexpr GlobalIndex none = std::numeric_limits<GlobalIndex>::max();
+  auto refused = elastic.set_goal(goal.region, goal.control, goal.position);
+  auto count = static_cast<GlobalIndex>(refused.size());
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, comm);
+  if (count == 0) return;
+  std::ranges::sort(refused);
+  refused.resize(shown, none);
+  std::vector<GlobalIndex> all(shown * static_cast<std::size_t>(size_of(comm)));
+  MPI_Allgather(refused.data(), shown, MPI_INT64_T, all.data(), shown, MPI_INT64_T, comm);
+  std::ranges::sort(all);
+  std::string numbers;
+  for (std::size_t i = 0; i < shown && all[i] != none; ++i)
+    numbers += (i > 0 ? ", " : " ") + std::to_string(all[i]);
+  const double limit = elastic.properties(goal.region).plasticity->limit;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", limit);
+  throw UserError(goal.name + ": " + std::to_string(count) +
+                  " elements would be turned inside out or flat, or stretched or compressed more than " +
+                  text.data() + " times, the 'limit' of the plasticity; the first are" + numbers);
+}
+
 std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t axis) {
   return "obstacles." + obstacle.name() + "." + what + "_" + "xyz"[axis];
 }
@@ -142,6 +181,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
+  for (const auto& goal : definition.goals) set_goal(elastic_, mesh_.comm, goal);
   system_.projection = projection_.get();
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);

@@ -20,6 +20,7 @@ class PlasticCells {
   PlasticCells(const Plasticity& law, ElementBlock& block);
 
   [[nodiscard]] const Plasticity& law() const { return arrays_.law; }
+  void set_law(const Plasticity& law);
   /// The times of the last update of the forces and of the next one [s]; the same unless told otherwise.
   void set_times(double last, double next);
   /// From now on flow is controlled. The goal of a point is the deformation that brings the nodes of its cell

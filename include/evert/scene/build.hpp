@@ -18,12 +18,20 @@ struct BodyRange {
   Vec3d center_of_volume{};  ///< [m]
 };
 
+/// What was read of the goal of a body's plastic flow; nothing of a goal that is a map.
+struct BodyGoal {
+  std::vector<Vec3d> nodes;         ///< of the body, placed in the world [m]
+  std::vector<Mat3d> deformations;  ///< goals of F_p, in the world
+  std::vector<GlobalIndex> cells;   ///< whose they are, numbers in the scene's mesh
+};
+
 /// All bodies of a scene as one mesh, placed in the world; exists on rank 0 only.
 struct SceneMesh {
   Mesh mesh;                      ///< regions: one per body and per group with properties of its own
   std::vector<BodyRange> bodies;  ///< in the order of SceneConfig::bodies
   std::vector<int> region_body;   ///< per region: index of its body
   std::vector<int> region_group;  ///< per region: index into BodyConfig::groups, or −1
+  std::vector<BodyGoal> goals;    ///< per body
 };
 
 /// Not collective. Reads or generates every body, keeps the named groups, places it in the world and resolves

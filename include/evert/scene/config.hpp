@@ -10,6 +10,7 @@
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/bad_meshes.hpp"
 #include "evert/mesh/generators.hpp"
+#include "evert/mesh/round_bar.hpp"
 #include "evert/scene/shape_config.hpp"
 
 #include <array>
@@ -52,7 +53,7 @@ struct FilledShape {
   double edge_length = 0;  ///< [m]
 };
 
-using MeshConfig = std::variant<FileMesh, BoxMesh, FilledShape, WedgeStack, CutCube, SliverBall>;
+using MeshConfig = std::variant<FileMesh, BoxMesh, FilledShape, RoundBar, WedgeStack, CutCube, SliverBall>;
 
 // --- bodies
 
@@ -148,6 +149,45 @@ struct DampingConfig {
   double frequency = 0;                          ///< [Hz] > 0 where a ratio is given
 };
 
+/// What the body is to become, by a map of its rest shape about the middle of its bounding box.
+struct MeshGoal {
+  std::string path;  ///< a mesh file of the same nodes and cells; relative to the scene file; resolved here
+};
+struct DeformationGoal {
+  std::string path;  ///< a text file of nine numbers per cell; relative to the scene file; resolved here
+};
+struct FlattenGoal {
+  double factor = 1;      ///< [-] > 0 along the axis; volume is kept
+  Vec3d axis{{0, 1, 0}};  ///< unit vector
+};
+struct TwistGoal {
+  double rate = 0;        ///< [rad/m] about the axis
+  Vec3d axis{{0, 1, 0}};  ///< unit vector
+};
+struct BendGoal {
+  double curvature = 0;      ///< [1/m] of the axis through the middle
+  Vec3d axis{{1, 0, 0}};     ///< unit vector
+  Vec3d towards{{0, 1, 0}};  ///< unit vector across the axis: where the centre of the circle lies
+};
+struct GoalConfig {
+  std::variant<MeshGoal, DeformationGoal, FlattenGoal, TwistGoal, BendGoal> shape;
+  double strength = 0;                                     ///< [1/s] ≥ 0
+  double from = 0;                                         ///< [s]
+  double until = std::numeric_limits<double>::infinity();  ///< [s] > from
+};
+
+/// Exactly one of the yields; of the hardenings at most one. Stresses are those of isochoric flow in tension.
+struct PlasticityConfig {
+  std::optional<double> yield_strain;       ///< [-] > 0
+  std::optional<double> yield_stress;       ///< [Pa] > 0
+  std::optional<double> hardening;          ///< [-] ≥ 0
+  std::optional<double> hardening_modulus;  ///< [Pa] ≥ 0
+  bool isochoric = true;                    ///< false with a goal
+  double relaxation_time = 0;               ///< [s] ≥ 0
+  double limit = 4;                         ///< [-] > 1
+  std::optional<GoalConfig> goal;           ///< of a body, not of a group
+};
+
 /// What differs in one named volume group of the mesh; empty members: as in the body.
 struct GroupConfig {
   std::string name;
@@ -155,6 +195,7 @@ struct GroupConfig {
   std::optional<MaterialConfig> material;
   std::optional<DampingConfig> damping;
   std::optional<ActivationConfig> activation;
+  std::optional<PlasticityConfig> plasticity;
 };
 
 struct BodyConfig {
@@ -170,6 +211,7 @@ struct BodyConfig {
   std::optional<DampingConfig> damping;
   std::optional<FibreConfig> fibres;           ///< there exactly when some material needs it
   std::optional<ActivationConfig> activation;  ///< of muscle; empty: not active
+  std::optional<PlasticityConfig> plasticity;  ///< empty: the body is elastic
   Precision precision = Precision::full;
   std::vector<GroupConfig> groups;
 };

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace evert {
@@ -22,12 +23,21 @@ struct TimedEvent {
   std::function<void(Simulation&)> apply;
 };
 
+/// What the flow of a region is led to.
+struct FlowGoal {
+  std::int32_t region = 0;
+  std::string name;  ///< for messages
+  PlasticControl control;
+  ElasticForces::GoalPosition position;
+};
+
 /// Everything a simulation is made of, as values. Lists that the scene leaves empty stay empty.
 struct SimulationDefinition {
   std::vector<ElasticProperties> properties;  ///< per entry of DistributedMesh::regions
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<PrescribedNodes> prescribed;  ///< this rank's owned nodes
   std::vector<Activation> activations;      ///< of regions of muscle
+  std::vector<FlowGoal> goals;              ///< of regions that flow
   std::vector<TimedEvent> events;
   Vec3d gravity{};                        ///< [m/s^2]
   BodyForce body_force;                   ///< besides gravity

@@ -210,14 +210,9 @@ TEST(PlasticFlow, TakesEnergyOnTenThousandRandomPaths) {
       const Mat3d f = random_gradient(random, step < 2 ? 0.2 : 0.8);
       inverted += determinant(f) < 0 ? 1 : 0;
       const double before = cube.block().plastic()->work();
-      // The energy at F without this step's flow.
-      const Body body = box(CellType::tet4, 1, 1, 1, 1, 0);
-      const auto x = deformed(body, [&](const Vec3d& p) { return f * p; });
-      const double trial = cube.block().energy(x.data());
       cube.deform(f);
       const double work = cube.block().plastic()->work() - before;
       ASSERT_GE(work, 0) << path;
-      ASSERT_NEAR(work, trial - cube.energy(), 1e-9 * std::max(trial, 1.0)) << path;
       flown += work > 0 ? 1 : 0;
       const Vec3d plastic = cube.plastic_stretches();
       ASSERT_LE(plastic[0], law.limit * (1 + 1e-9)) << path;
@@ -226,6 +221,36 @@ TEST(PlasticFlow, TakesEnergyOnTenThousandRandomPaths) {
   }
   EXPECT_GT(flown, 10000);
   EXPECT_GT(inverted, 3000);
+}
+
+/// What forces do on a path that flows is kept as energy or spent as work on flow, to first order in the steps.
+TEST(PlasticFlow, SpendsWhatForcesDo) {
+  const Body body = box(CellType::hex8, 1, 1, 1, 1, 0);
+  for (const auto& material : isotropic) {
+    double before = 0;
+    for (const int steps : {200, 400, 800}) {
+      const auto block = plastic_block(body, material, {.yield = 0.05, .hardening = 0.2});
+      NodalValues x = nodal_values(body.rest), f = forces(*block, x);
+      double done = 0;
+      for (int step = 1; step <= steps; ++step) {
+        const double s = static_cast<double>(step) / steps;
+        const auto next = deformed(body, [&](const Vec3d& p) {
+          return Vec3d{p[0] * (1 + 0.5 * s), p[1] + 0.4 * s * s * p[0], p[2] * (1 - 0.3 * s)};
+        });
+        const auto force = forces(*block, next);
+        for (std::size_t i = 0; i + 1 < x.size(); ++i) done -= 0.5 * (force[i] + f[i]) * (next[i] - x[i]);
+        x = next;
+        f = force;
+      }
+      EXPECT_GT(block->plastic()->work(), 0.5 * done);
+      const double error = std::abs(done - block->energy(x.data()) - block->plastic()->work()) / done;
+      EXPECT_LT(error, 2.0 / steps) << name_of(material);
+      if (before > 0) {
+        EXPECT_LT(error, 0.7 * before) << name_of(material);
+      }
+      before = error;
+    }
+  }
 }
 
 /// A homogeneous deformation is that of every kind of element.

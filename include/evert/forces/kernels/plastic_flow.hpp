@@ -68,7 +68,8 @@ struct FlowRun {
 
   PerPoint<Vec3<T>> log_growth;
   PerPoint<T> amount;                        ///< Δα; 0 where nothing flows
-  PerPoint<T> energy;                        ///< ψ of the trial state
+  PerPoint<Mat3<T>> trial_strain;            ///< log V of the trial state
+  PerPoint<T> trial_energy;                  ///< ψ of the trial state
   PerPoint<LowerTriangle<T>> before, after;  ///< F_p
 };
 
@@ -149,11 +150,29 @@ EVERT_STAGE void plastic_deformation_stage(const PlasticArrays& plastic, BatchRa
   }
 }
 
+/// U diag(p) Uᵀ of a point of a diagonalised run, with p in the order of principal_stretches().
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> spatial_tensor(const PointRun<T>& run, std::size_t i, const Vec3<T>& p) {
+  return times_transpose(isotropic_tensor(run.left[i], run.plane[i], run.right[i], p),
+                         polar_rotation(run.left[i], run.plane[i], run.right[i]));
+}
+
+/// log V of F_e = V R; flat and inverted stretches count as the flattest that flow.
+template <Real T>
+EVERT_ALWAYS_INLINE Mat3<T> spatial_log_strain(const PointRun<T>& run, std::size_t i) {
+  const T floor = T(flattest_flow);
+  const Vec3<T> sigma = principal_stretches(run.plane[i]);
+  return spatial_tensor(run, i,
+                        {log(max(sigma[0], floor)), log(max(sigma[1], floor)), log(max(sigma[2], floor))});
+}
+
 template <Real T, class Model>
-EVERT_STAGE void trial_energy_stage(const Model& model, const PointRun<T>& run, std::size_t points,
-                                    FlowRun<T>& flowing) {
-  for (std::size_t i = 0; i < points; ++i)
-    flowing.energy[i] = model.energy(principal_stretches(run.plane[i]));
+EVERT_STAGE void trial_stage(const Model& model, const PointRun<T>& run, std::size_t points,
+                             FlowRun<T>& flowing) {
+  for (std::size_t i = 0; i < points; ++i) {
+    flowing.trial_strain[i] = spatial_log_strain(run, i);
+    flowing.trial_energy[i] = model.energy(principal_stretches(run.plane[i]));
+  }
 }
 
 /// log S of F_p = R S.
@@ -234,10 +253,11 @@ EVERT_STAGE void keep_deformation(const PlasticArrays& plastic, BatchRange batch
   }
 }
 
-/// Flow takes energy or does not happen; what it takes is the work on it. The return along a ray does, of
+/// Flow takes energy or does not happen: τ : Δ log V, with the Kirchhoff stress τ that is left, is the work
+/// on it. (What ψ has lost is more, by what the trial went too far.) The return along a ray takes energy, of
 /// models whose stress grows with strain (Baker, Ericksen: st_venant_kirchhoff far compressed is not one);
 /// the limit of F_p may turn it aside. Takes what would cost energy back from `flowing`; true where there is
-/// some.
+/// some. A control that attracts may cost energy: while it does, all that flow changes of ψ is its work.
 template <Real T, const auto& element, class Model>
 EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& plastic, BatchRange batches,
                                     const PointRun<T>& run, FlowRun<T>& flowing) {
@@ -247,13 +267,18 @@ EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& pla
     T most = T(0.0);
     for (std::size_t q = 0; q < element.points; ++q, ++i) {
       const auto point = PlasticPoint<T>::template at<element>(plastic, {b, q});
-      const T work = flowing.energy[i] - model.energy(principal_stretches(run.plane[i]));
+      const Vec3<T> sigma = principal_stretches(run.plane[i]);
       if (plastic.attraction > 0) {
-        point.set_control_work(point.control_work() - select(flowing.amount[i] > T(0.0), work, T(0.0)));
+        const T change = model.energy(sigma) - flowing.trial_energy[i];
+        point.set_control_work(point.control_work() + select(flowing.amount[i] > T(0.0), change, T(0.0)));
         point.set_alpha(point.alpha() + flowing.amount[i]);
         most = max(most, flowing.amount[i]);
         continue;
       }
+      const Vec3<T> stress = model.principal_stress(sigma);
+      const Vec3<T> kirchhoff{sigma[0] * stress[0], sigma[1] * stress[1], sigma[2] * stress[2]};
+      const T work =
+          contract(spatial_tensor(run, i, kirchhoff), flowing.trial_strain[i] - spatial_log_strain(run, i));
       const auto flows = flowing.amount[i] > T(0.0) && work >= T(0.0);
       taken_back = taken_back || any(flowing.amount[i] > T(0.0) && !flows);
       const T amount = select(flows, flowing.amount[i], T(0.0));
@@ -277,7 +302,7 @@ EVERT_ALWAYS_INLINE void flow(const Model& model, const BlockArrays& block, cons
   if (!attracts && !may_yield<T, element>(plastic, batches, run, points)) return;
   FlowRun<T> flowing;
   if (!yield_stage<T, element>(plastic, batches, run, points, flowing) && !attracts) return;
-  trial_energy_stage(model, run, points, flowing);
+  trial_stage(model, run, points, flowing);
   plastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
   if (plastic.goal != nullptr) control_stage<T, element>(plastic, batches, points, flowing);
   const auto deform = [&] {
