@@ -3,12 +3,14 @@
 #include "evert/core/error.hpp"
 #include "evert/forces/node_matrix.hpp"
 #include "evert/integrators/implicit_strains.hpp"
+#include "evert/io/checkpoint.hpp"
 #include "evert/math/nodal.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 #include <slepceps.h>
 
+#include "tests/mpi/io/scratch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include "tests/support/strain.hpp"
@@ -459,6 +461,42 @@ TEST_P(OnMesh, DoesNotDependOnTheNumberOfRanks) {
   EXPECT_LE(difference, 1e-9);
   tell("positions after " + std::to_string(steps) + " steps on one rank and on several [m]", "the same",
        difference, "1e-9");
+}
+
+/// Written by one rank and read by all, and the other way round.
+TEST_P(OnMesh, GoesOnFromACheckpointOnOtherRanks) {
+  if (std::string(GetParam().mesh) == "ball20k") GTEST_SKIP() << "takes too long";
+  constexpr int steps = 100;
+  const test::Scratch scratch;
+  const auto start = [&](MPI_Comm comm) {
+    return simulation(path_, GetParam(), amplitude_of(GetParam()), IntegrationMethod::newmark, comm);
+  };
+  const auto write = [](const Simulation& body, const std::string& file) {
+    CheckpointWriter(body.mesh(), file, "compliant")
+        .write(body.node_state(), body.flow_state(), body.state_scalars());
+  };
+  const auto go_on = [&](MPI_Comm comm, const std::string& file) {
+    const auto body = start(comm);
+    const auto kept = read_checkpoint(body->mesh(), file, "compliant");
+    body->restore(kept.nodes(), kept.scalars, kept.flow);
+    EXPECT_EQ(body->steps(), steps);
+    return test::after_steps(*body, steps);
+  };
+  const auto alone = start(PETSC_COMM_SELF), together = start(PETSC_COMM_WORLD);
+  const auto halfway = test::after_steps(*alone, steps);
+  test::after_steps(*together, steps);
+  if (rank_of(PETSC_COMM_WORLD) == 0) write(*alone, scratch / "by_one.h5");
+  write(*together, scratch / "by_all.h5");
+  const auto uninterrupted = test::after_steps(*alone, steps);
+  EXPECT_GT(test::largest_difference(halfway, uninterrupted), 1e-3);
+  const double on_all =
+      test::largest_difference(go_on(PETSC_COMM_WORLD, scratch / "by_one.h5"), uninterrupted);
+  const double on_one =
+      test::largest_difference(go_on(PETSC_COMM_SELF, scratch / "by_all.h5"), uninterrupted);
+  EXPECT_LE(on_all, 1e-9);
+  EXPECT_LE(on_one, 1e-9);
+  tell("positions 100 steps after a restart on other ranks, and without it [m]", "the same",
+       std::max(on_all, on_one), "1e-9");
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, OnMesh, testing::ValuesIn(cases),
