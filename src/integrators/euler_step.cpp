@@ -12,7 +12,7 @@ namespace evert {
 void euler_kick(System& system, DampingSolver& solver, NodeField& force, Vec right, double dt) {
   const auto mass = system.masses();
   const auto v = system.v.owned();
-  system.begin_projection();
+  system.begin_projection(dt);
   damped_force(system, system.v, force);
   account_for_mass_damping(system, v, dt);
   account_for_gravity(system, dt);

@@ -20,7 +20,7 @@ double Newmark::stable_step(const System& system) {
 
 StepReport Newmark::advance(System& system, double dt) {
   StepReport report{.dt = dt};
-  system.begin_projection();
+  system.begin_projection(dt);
   report.cg_iterations = predict(system, dt);
   const auto held = held_.collide(system, predicted_, dt);  // 3.
   report.projection_iterations = system.project(held_.constraints(), dt);

@@ -20,7 +20,7 @@ double Verlet::stable_step(const System& system) { return explicitly_damped_step
 
 StepReport Verlet::advance(System& system, double dt) {
   StepReport report{.dt = dt};
-  system.begin_projection();
+  system.begin_projection(dt);
   kick_and_drift(system, dt);
   const auto held = held_.collide(system, middle_, dt);
   report.projection_iterations = system.project(held_.constraints(), dt);

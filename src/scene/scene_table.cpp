@@ -117,7 +117,7 @@ const Table<IntegratorConfig>& integrator_table() {
 const Table<FilterConfig>& filter_table() {
   static const auto table =
       Table<FilterConfig>(
-          "Softens the directions in which bad tetrahedra vibrate too fast for the step, and nothing else.")
+          "Slows down what vibrates too fast for the step in bad tetrahedra, and nothing else.")
           .required(
               "time_step", &FilterConfig::time_step, word_or_number("auto", "s", above(0)), "1e-3",
               "The step to be possible; integrator.time_step is at most as large. auto: integrator.time_step "

@@ -3,14 +3,17 @@
 #include "evert/core/error.hpp"
 #include "evert/forces/node_matrix.hpp"
 #include "evert/integrators/implicit_strains.hpp"
+#include "evert/io/checkpoint.hpp"
 #include "evert/math/nodal.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 #include <slepceps.h>
 
+#include "tests/mpi/io/scratch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include "tests/support/strain.hpp"
 #include "tests/support/verify.hpp"
 #include <array>
 #include <cmath>
@@ -325,7 +328,8 @@ std::unique_ptr<Simulation> simulation(const std::string& path, const Case& of, 
   return std::make_unique<Simulation>(std::move(mesh), std::move(definition));
 }
 
-/// What the scheme keeps of linear forces, ½ vᵀAv + ψ − Δt²/8 fᵀA⁻¹f with A = M + θΔt² K_s.
+/// What the scheme keeps of linear forces, ½ vᵀAv + ψ − Δt²/8 fᵀA⁻¹f with A = M + θΔt² K_s, without the
+/// flight of the whole body, which may be most of it.
 class KeptEnergy {
  public:
   KeptEnergy(const Simulation& simulation, const SimulationDefinition& definition)
@@ -353,7 +357,10 @@ class KeptEnergy {
     strains_.solve(f_.vec(), out_.vec(), {});
     energy -= dt_ * dt_ / 8 * product(f_, out_);
     const auto all = simulation_.measure();
-    return all.kinetic_energy + all.elastic_energy + energy;
+    double mass = 0;
+    for (const double m : forces_.masses()) mass += m;
+    const double flight = dot(all.momentum, all.momentum) / (2 * mass);
+    return all.kinetic_energy - flight + all.elastic_energy + energy;
   }
 
  private:
@@ -372,7 +379,7 @@ class KeptEnergy {
 };
 
 /// [-] of the strain at the start, such that no element is strained by more than 0.2.
-double amplitude_of(const Case& of) { return std::string(of.mesh) == "wedge_stack" ? 0.01 : 0.02; }
+double amplitude_of(const Case& of) { return std::string(of.mesh) == "wedge_stack" ? 0.01 : 0.015; }
 
 TEST_P(OnMesh, KeepsMomentaAndEnergy) {
   if (size_of(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "DoesNotDependOnTheNumberOfRanks";
@@ -382,10 +389,11 @@ TEST_P(OnMesh, KeepsMomentaAndEnergy) {
     KeptEnergy energy(*body, moving(body->mesh(), GetParam(), amplitude_of(GetParam()), method));
     const auto before = body->measure();
     const double at_first = energy.now();
-    double worst = 0;
+    double worst = 0, strain = 0;
     for (int step = 1; step <= 2000; ++step) {
       body->step(GetParam().time_step);
       if (step <= 1500) worst = std::max(worst, std::abs(energy.now() / at_first - 1));
+      strain = std::max(strain, test::largest_strain(*body));
     }
     const auto after = body->measure();
     const double momentum = norm(after.momentum - before.momentum) / norm(before.momentum);
@@ -393,12 +401,48 @@ TEST_P(OnMesh, KeepsMomentaAndEnergy) {
         norm(after.angular_momentum - before.angular_momentum) / norm(before.angular_momentum);
     EXPECT_LE(momentum, 1e-11);
     EXPECT_LE(angular, 1e-9);
+    EXPECT_LE(strain, 0.2);
     if (method != IntegrationMethod::newmark) continue;  // Euler's scheme keeps another energy
     EXPECT_LE(worst, 0.02);
+    tell("largest strain in 2000 steps", "at most 0.2", strain, "0.2");
     tell("change of momentum in 2000 steps, relative", "0", momentum, "1e-11");
     tell("change of angular momentum in 2000 steps, relative", "0", angular, "1e-9");
     tell("change of the kept energy in 1500 steps, relative", "0", worst, "0.02");
   }
+}
+
+/// Of the stack with the material of paper B, strained by up to a fifth, in steps of half of what the filter
+/// is for: in whole ones it is only up to strains of about 2 %, and neo-Hookean ones may blow up beyond 7 %.
+TEST(WedgeStack, KeepsEnergyWhenStrainedFar) {
+  const auto path = test::shared_mesh("wedge_stack.msh");
+  if (!path) GTEST_SKIP() << "wedge_stack.msh is not in EVERT_SHARED_MESHES";
+  if (size_of(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "DoesNotDependOnTheNumberOfRanks";
+  const double dt = cases[0].time_step / 2;
+  const auto define = [&](const DistributedMesh& mesh) {
+    auto definition = moving(mesh, cases[0], 0.17, IntegrationMethod::newmark);
+    definition.fixed_time_step = dt;
+    for (auto& properties : definition.properties)
+      properties.material = RotatedLinear{.lame = reference_lame};
+    return definition;
+  };
+  auto mesh = test::distributed(*path);
+  auto definition = define(mesh);
+  Simulation body(std::move(mesh), std::move(definition));
+  KeptEnergy energy(body, define(body.mesh()));
+  const double at_first = energy.now();
+  double worst = 0, strain = 0;
+  for (int step = 1; step <= 1500; ++step) {
+    body.step(dt);
+    worst = std::max(worst, std::abs(energy.now() / at_first - 1));
+    strain = std::max(strain, test::largest_strain(body));
+  }
+  EXPECT_LE(worst, 0.02);
+  EXPECT_GE(strain, 0.15);
+  EXPECT_LE(strain, 0.2);
+  test::verify(
+      "compliant filter: wedge_stack at half of 700 us, rotated_linear: largest strain in 1500 steps",
+      "0.15 to 0.2", strain, "");
+  test::verify("compliant filter: the same: change of the kept energy, relative", "0", worst, "0.02");
 }
 
 /// Every rank compares with what it computes when it has the whole mesh to itself.
@@ -417,6 +461,42 @@ TEST_P(OnMesh, DoesNotDependOnTheNumberOfRanks) {
   EXPECT_LE(difference, 1e-9);
   tell("positions after " + std::to_string(steps) + " steps on one rank and on several [m]", "the same",
        difference, "1e-9");
+}
+
+/// Written by one rank and read by all, and the other way round.
+TEST_P(OnMesh, GoesOnFromACheckpointOnOtherRanks) {
+  if (std::string(GetParam().mesh) == "ball20k") GTEST_SKIP() << "takes too long";
+  constexpr int steps = 100;
+  const test::Scratch scratch;
+  const auto start = [&](MPI_Comm comm) {
+    return simulation(path_, GetParam(), amplitude_of(GetParam()), IntegrationMethod::newmark, comm);
+  };
+  const auto write = [](const Simulation& body, const std::string& file) {
+    CheckpointWriter(body.mesh(), file, "compliant")
+        .write(body.node_state(), body.flow_state(), body.state_scalars());
+  };
+  const auto go_on = [&](MPI_Comm comm, const std::string& file) {
+    const auto body = start(comm);
+    const auto kept = read_checkpoint(body->mesh(), file, "compliant");
+    body->restore(kept.nodes(), kept.scalars, kept.flow);
+    EXPECT_EQ(body->steps(), steps);
+    return test::after_steps(*body, steps);
+  };
+  const auto alone = start(PETSC_COMM_SELF), together = start(PETSC_COMM_WORLD);
+  const auto halfway = test::after_steps(*alone, steps);
+  test::after_steps(*together, steps);
+  if (rank_of(PETSC_COMM_WORLD) == 0) write(*alone, scratch / "by_one.h5");
+  write(*together, scratch / "by_all.h5");
+  const auto uninterrupted = test::after_steps(*alone, steps);
+  EXPECT_GT(test::largest_difference(halfway, uninterrupted), 1e-3);
+  const double on_all =
+      test::largest_difference(go_on(PETSC_COMM_WORLD, scratch / "by_one.h5"), uninterrupted);
+  const double on_one =
+      test::largest_difference(go_on(PETSC_COMM_SELF, scratch / "by_all.h5"), uninterrupted);
+  EXPECT_LE(on_all, 1e-9);
+  EXPECT_LE(on_one, 1e-9);
+  tell("positions 100 steps after a restart on other ranks, and without it [m]", "the same",
+       std::max(on_all, on_one), "1e-9");
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, OnMesh, testing::ValuesIn(cases),

@@ -4,12 +4,12 @@
 #include "evert/filter/collatz_wielandt.hpp"
 #include "evert/filter/spectrum.hpp"
 #include "evert/math/nodal.hpp"
-#include "evert/math/svd3.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/scenes.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include "tests/support/strain.hpp"
 #include "tests/support/verify.hpp"
 #include <array>
 #include <cmath>
@@ -40,24 +40,6 @@ constexpr std::array motions{Motion{"wedge_stack", 0.05, 0.7e-3, paper, 0.002},
                              Motion{"ball404", 1000, 7.5e-3, adaptive, 0.004}};
 
 constexpr Lame reference_lame = Lame::from_young_poisson(1e4, 0.3);
-
-/// Collective. The largest |σ − 1| of any element.
-double largest_strain(const Simulation& simulation) {
-  double largest = 0;
-  const auto x = simulation.positions().local();
-  for (const auto& entry : simulation.mesh().cells)
-    for (std::size_t first = 0; first < entry.nodes.size(); first += 4) {
-      const auto nodes = std::span(entry.nodes).subspan(first, 4);
-      const auto shape = tet_shape(nodes, simulation.mesh().rest_positions);
-      Mat3d f{};
-      for (std::size_t a = 1; a < 4; ++a)
-        f += outer(node_value(x, nodes[a]) - node_value(x, nodes[0]), shape.gradients[a]);
-      for (const double stretch : svd3(f).sigma.components)
-        largest = std::max(largest, std::abs(stretch - 1));
-    }
-  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, simulation.mesh().comm);
-  return largest;
-}
 
 SimulationDefinition moving(const DistributedMesh& mesh, const Motion& motion, const Material& material) {
   SimulationDefinition definition;
@@ -144,7 +126,7 @@ History history_of(Simulation& simulation, KeptEnergy& energy, double dt) {
   for (int step = 1; step <= 2000; ++step) {
     simulation.step(dt);
     if (step <= 1500) history.energy = std::max(history.energy, std::abs(energy.now() / at_first - 1));
-    if (step % 20 == 0) history.strain = std::max(history.strain, largest_strain(simulation));
+    if (step % 20 == 0) history.strain = std::max(history.strain, test::largest_strain(simulation));
   }
   const auto after = simulation.measure();
   history.momentum = norm(after.momentum - before.momentum) / norm(before.momentum);

@@ -13,14 +13,19 @@ namespace evert {
 /// positions, and the velocities with them.  paper B, section 5; PHYSICS 9
 ///
 /// Positions go along W Jᵀ λ with (J W Jᵀ + 1e-8 of its diagonal) λ = C until all are met to 1e-6 of their
-/// lengths. Constraints that depend on each other are thereby met by the least of multipliers.
+/// lengths. Constraints that depend on each other are thereby met by the least of multipliers; those of which
+/// a scene holds or moves all nodes have no row in J.
 class ShapeProjection {
  public:
   /// Collective. Of the shape constraints of `filter`, which it keeps up with.
   ShapeProjection(const DistributedMesh& mesh, const ElasticForces& elastic, const ModalFilter& filter);
+  /// Collective. Of these of this rank.
+  ShapeProjection(const DistributedMesh& mesh, const ElasticForces& elastic,
+                  std::vector<ShapeConstraint> constraints, FilterProjection form);
 
-  /// Collective. At the beginning of a step: with `shake` J is that at `x`, whose ghosts are up to date.
-  void begin(const NodeField& x);
+  /// Collective. At the beginning of a step, with what is `prescribed` in it (sorted): with `shake` J is that
+  /// at `x`, whose ghosts are up to date.
+  void begin(const NodeField& x, std::span<const NodeConstraint> prescribed);
   /// Collective. Changes `x` so that the constraints are met, and `v` by what that is in `dt` [s]; `held`
   /// nodes stay in the directions in which they are held. Returns the iterations that took. Where they cannot
   /// be met throws on all ranks, UserError where held nodes contradict them, else SimulationError.
@@ -29,6 +34,7 @@ class ShapeProjection {
   [[nodiscard]] const RowSystem& rows() const { return *rows_; }
 
  private:
+  [[nodiscard]] bool follow(std::span<const NodeConstraint> prescribed);
   void rebuild();
   void set_rows(const NodeField& x);
   double take_violations(NodeField& x);
@@ -37,9 +43,12 @@ class ShapeProjection {
 
   const DistributedMesh& mesh_;
   const ElasticForces& elastic_;
-  const ModalFilter& filter_;
+  const ModalFilter* filter_ = nullptr;  // null: the constraints stay
+  FilterProjection form_;
+  std::vector<ShapeConstraint> all_, constraints_;  // as given; those of rows_ first
+  std::vector<LocalIndex> fixed_;                   // owned nodes that are prescribed in all directions
   std::optional<RowSystem> rows_;
-  std::vector<double> values_, inverse_masses_;  // one a row; per local node [1/kg]
+  std::vector<double> values_, inverse_masses_;  // one a constraint; per local node [1/kg]
   NodeField before_;
   std::uint64_t revision_ = 0;
 };

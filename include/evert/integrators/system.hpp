@@ -62,10 +62,10 @@ struct System {
   void prepare_solve(double dt) const {
     if (implicit_strains != nullptr) implicit_strains->prepare(x, dt, force_updates);
   }
-  /// Collective. At the beginning of a step, and once nodes have moved, with `held` what holds them from then
-  /// on: keeps the lengths of filtered elements. Returns the iterations that took.
-  void begin_projection() const {
-    if (projection != nullptr) projection->begin(x);
+  /// Collective. At the beginning of a step of `dt` [s], and once nodes have moved, with `held` what holds
+  /// them from then on: keeps the lengths of filtered elements. Returns the iterations that took.
+  void begin_projection(double dt) {
+    if (projection != nullptr) projection->begin(x, prescribed.at(time + dt));
   }
   int project(std::span<const NodeConstraint> held, double dt) {
     return projection != nullptr ? projection->project(x, v, held, dt) : 0;

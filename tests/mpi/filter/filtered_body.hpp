@@ -5,7 +5,9 @@
 
 #include "all_bounds.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -35,6 +37,30 @@ struct FilteredBody {
   /// Of M⁻¹K' at rest [1/s²], by SLEPc to 1e-10.
   [[nodiscard]] double largest_eigenvalue() const {
     return fastest_mode(stiffness(), 1e-10).squared_frequency;
+  }
+  /// Collective. The most that K' does to a rigid motion u, ‖M^−½ K' u‖/‖M^½ u‖ [1/s²].
+  [[nodiscard]] double rigid_residual() const {
+    const auto matrix = stiffness();
+    VecHandle motion, force;
+    check(MatCreateVecs(matrix.mat(), motion.out(), force.out()));
+    double most = 0;
+    for (std::size_t mode = 0; mode < 6; ++mode) {
+      Vec3d axis{};
+      axis[mode % 3] = 1;
+      PetscScalar* values = nullptr;
+      check(VecGetArray(motion.get(), &values));
+      for (std::size_t i = 0; i < elastic.masses().size(); ++i) {
+        const Vec3d u = mode < 3 ? axis : cross(axis, mesh.rest_positions[i]);
+        for (std::size_t k = 0; k < 3; ++k) values[3 * i + k] = std::sqrt(elastic.masses()[i]) * u[k];
+      }
+      check(VecRestoreArray(motion.get(), &values));
+      check(MatMult(matrix.mat(), motion.get(), force.get()));
+      PetscReal of_force = 0, of_motion = 0;
+      check(VecNorm(force.get(), NORM_2, &of_force));
+      check(VecNorm(motion.get(), NORM_2, &of_motion));
+      most = std::max(most, of_force / of_motion);
+    }
+    return most;
   }
   [[nodiscard]] double collatz_wielandt() const { return collatz_wielandt_bound(stiffness().mat(), 60); }
   [[nodiscard]] GlobalIndex over_ranks(GlobalIndex count) const {
