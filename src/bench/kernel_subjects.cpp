@@ -3,6 +3,7 @@
 #include "evert/bench/level_kernels.hpp"
 #include "evert/core/collective.hpp"
 #include "evert/filter/filtered_block.hpp"
+#include "evert/forces/plastic_cells.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -71,7 +72,9 @@ std::unique_ptr<ElasticBlock> plastic_block(const Specimen& specimen, double yie
   const auto& cells = specimen.mesh.cells.front();
   ElasticCells of_block{cells.type, cells.nodes, cells.interior, density, {}};
   of_block.plasticity = Plasticity{.yield = yield};
-  return make_elastic_block(of_block, specimen.mesh.rest_positions, material, Damping{});
+  auto block = make_elastic_block(of_block, specimen.mesh.rest_positions, material, Damping{});
+  block->plastic()->set_times(0, 1);
+  return block;
 }
 
 PlasticForces not_yielding(const Specimen& specimen) {

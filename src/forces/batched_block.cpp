@@ -60,6 +60,7 @@ BatchedBlock::BatchedBlock(const ElementView& element, const ElasticCells& cells
       material_(material),
       damping_(damping),
       density_(cells.density),
+      mean_dilatation_(cells.mean_dilatation),
       kernels_(kernels),
       rest_stiffness_(
           rest_stiffness(element_block_, own_mass_shares(element_block_, density_), lame_of(material))),
@@ -72,10 +73,9 @@ BatchedBlock::BatchedBlock(const ElementView& element, const ElasticCells& cells
   }
   if (kernels.fibres) set_fibres(element_block_, cells.fibres, rest_positions, kernels.precision);
   if (cells.plasticity) {
-    EVERT_ASSERT(kernels.flows, "plasticity of fibres or in mixed precision");
-    plastic_ = std::make_unique<PlasticCells>(*cells.plasticity, element_block_);
-    mass_shares_ = own_mass_shares(element_block_, density_);
-    settled_ = rest_stiffness_;
+    EVERT_ASSERT(kernels.deform_shapes != nullptr, "plasticity of fibres or in mixed precision");
+    plastic_ = std::make_unique<PlasticCells>(*cells.plasticity, element_block_, kernels.deform_shapes);
+    set_mass_shares(own_mass_shares(element_block_, density_));
   }
   point_kernels_at_memory();
 }
@@ -89,7 +89,8 @@ void BatchedBlock::point_kernels_at_memory() {
              rest_stiffness_.spin.data(),
              damping_state_.data(),
              element_block_.fibres.data(),
-             plastic_ != nullptr ? plastic_->arrays() : nullptr};
+             plastic_ != nullptr ? plastic_->arrays() : nullptr,
+             mean_dilatation_};
 }
 
 void BatchedBlock::update(const double* x, double* f, BatchRange batches) {
@@ -175,22 +176,17 @@ LocalIndex BatchedBlock::inverted_points(const double* x) const {
 void BatchedBlock::follow_flow() const {
   if (plastic_ == nullptr) return;
   constexpr float much =
-      0.01F;  // the step then is a percent shorter than it need be, if Poisson's ratio is small
+      0.01F;  // the step is shorter by a percent then, or by more where λ is much more than μ
   const Lame lame = lame_of(material_);
-  const auto lanes = static_cast<std::size_t>(element_block_.lanes);
-  for (LocalIndex b = 0; b < element_block_.batches(); ++b) {
-    const float drift = plastic_->drift()[static_cast<std::size_t>(b)];
-    if (drift == 0) continue;
-    const bool settle = drift > much;
-    if (settle) {
-      update_rest_stiffness(element_block_, mass_shares_, lame, plastic_.get(), {b, b + 1}, settled_);
-      plastic_->settle(b);
-    }
-    const auto growth = static_cast<float>(settle ? 1 : stiffness_growth(drift, lame));
-    for (auto slot = static_cast<std::size_t>(b) * lanes; slot < static_cast<std::size_t>(b + 1) * lanes;
-         ++slot) {
-      rest_stiffness_.largest[slot] = growth * settled_.largest[slot];
-      rest_stiffness_.spin[slot] = growth * settled_.spin[slot];
+  for (std::size_t slot = 0; slot < element_block_.cell_of_lane.size(); ++slot) {
+    const auto [largest, spin, drift] = plastic_->stiffness(slot);
+    if (drift > much) {
+      update_rest_stiffness(element_block_, mass_shares_, lame, plastic_.get(), slot, rest_stiffness_);
+      plastic_->settle(slot, rest_stiffness_.largest[slot], rest_stiffness_.spin[slot]);
+    } else {
+      const auto growth = static_cast<float>(drift > 0 ? stiffness_growth(drift, lame) : 1);
+      rest_stiffness_.largest[slot] = growth * largest;
+      rest_stiffness_.spin[slot] = growth * spin;
     }
   }
 }
@@ -213,16 +209,19 @@ void BatchedBlock::set_material(const Material& material, const Damping& damping
 }
 
 double BatchedBlock::rest_stiffness_of(LocalIndex cell) const {
-  follow_flow();
-  return rest_stiffness_.largest[static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)])];
+  const auto& largest = plastic_ != nullptr ? made_stiffness_ : rest_stiffness_.largest;
+  return largest[static_cast<std::size_t>(lane_of_cell_[static_cast<std::size_t>(cell)])];
 }
 
 void BatchedBlock::set_mass_shares(std::span<const double> shares) {
   rest_stiffness_ = rest_stiffness(element_block_, shares, lame_of(material_), plastic_.get());
   if (plastic_ != nullptr) {
     mass_shares_.assign(shares.begin(), shares.end());
-    settled_ = rest_stiffness_;
-    for (LocalIndex b = 0; b < element_block_.batches(); ++b) plastic_->settle(b);
+    for (std::size_t slot = 0; slot < element_block_.cell_of_lane.size(); ++slot)
+      plastic_->settle(slot, rest_stiffness_.largest[slot], rest_stiffness_.spin[slot]);
+    plastic_->exchange_shapes();
+    made_stiffness_ = rest_stiffness(element_block_, shares, lame_of(material_)).largest;
+    plastic_->exchange_shapes();
   }
   point_kernels_at_memory();
 }
@@ -231,7 +230,7 @@ std::size_t BatchedBlock::memory() const {
   return bytes(element_block_.nodes) + element_block_.shapes.bytes() + element_block_.volumes.bytes() +
          element_block_.fibres.bytes() + bytes(element_block_.cell_of_lane) + bytes(rest_stiffness_.largest) +
          bytes(rest_stiffness_.spin) + damping_state_.bytes() + bytes(lane_of_cell_) + bytes(mass_shares_) +
-         bytes(settled_.largest) + bytes(settled_.spin) + (plastic_ != nullptr ? plastic_->memory() : 0);
+         bytes(made_stiffness_) + (plastic_ != nullptr ? plastic_->memory() : 0);
 }
 
 std::unique_ptr<ElasticBlock> make_elastic_block(const ElementView& element, const ElasticCells& cells,

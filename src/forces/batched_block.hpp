@@ -56,10 +56,11 @@ class BatchedBlock final : public ElasticBlock {
   Material material_;
   Damping damping_;
   double density_;
+  bool mean_dilatation_;
   kernels::ElasticKernels kernels_;
   mutable RestStiffness rest_stiffness_;   // brought up to date when asked for
   std::unique_ptr<PlasticCells> plastic_;  // where something flows
-  mutable RestStiffness settled_;          // rest_stiffness_ where plastic_->drift() was 0
+  AlignedVector<float> made_stiffness_;    // λ_e as made, where something flows
   std::vector<double> mass_shares_;        // where something flows
   NumberArray damping_state_;
   kernels::BlockArrays arrays_{};         // into the vectors above

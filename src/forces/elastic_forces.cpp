@@ -19,9 +19,15 @@ namespace {
 constexpr double force_flops = 560;
 constexpr double damping_flops = 125;
 
-ElasticCells cells_of(const LocalCells& cells, double density,
-                      const std::optional<Plasticity>& plasticity = {}) {
-  return {cells.type, cells.nodes, cells.interior, density, cells.vectors, plasticity};
+ElasticCells cells_of(const LocalCells& cells, double density) {
+  return {cells.type, cells.nodes, cells.interior, density, cells.vectors};
+}
+
+ElasticCells cells_of(const LocalCells& cells, const ElasticProperties& properties) {
+  auto of_region = cells_of(cells, properties.density);
+  of_region.mean_dilatation = properties.mean_dilatation;
+  of_region.plasticity = properties.plasticity;
+  return of_region;
 }
 
 BatchRange first_half(BatchRange range) { return {range.begin, range.begin + (range.end - range.begin) / 2}; }
@@ -71,9 +77,8 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
       const auto& of_cells = properties_of(cells);
       blocks_.push_back(cells.size() == 0
                             ? nullptr
-                            : make_elastic_block(cells_of(cells, of_cells.density, of_cells.plasticity),
-                                                 mesh.rest_positions, of_cells.material, of_cells.damping,
-                                                 of_cells.precision));
+                            : make_elastic_block(cells_of(cells, of_cells), mesh.rest_positions,
+                                                 of_cells.material, of_cells.damping, of_cells.precision));
       damped_ = damped_ || of_cells.damping.model != DampingModel::none;
     }
   });
@@ -303,7 +308,8 @@ void ElasticForces::plastic_volume_ratio(std::size_t entry, std::span<double> pe
 std::size_t ElasticForces::flow_numbers(std::size_t entry) const {
   const auto& cells = mesh_.cells[entry];
   if (!properties(cells.region).plasticity) return 0;
-  return PlasticCells::numbers_per_point * static_cast<std::size_t>(quadrature_points(cells.type));
+  return PlasticCells::numbers_per_point * static_cast<std::size_t>(quadrature_points(cells.type)) +
+         PlasticCells::numbers_besides;
 }
 
 std::vector<double> ElasticForces::flow(std::size_t entry) const {
@@ -376,8 +382,8 @@ std::unique_ptr<ElasticBlock> ElasticForces::make_block(std::size_t entry,
     if (!all.vectors.empty()) chosen.vectors.push_back(all.vectors[static_cast<std::size_t>(cell)]);
     chosen.interior += cell < all.interior ? 1 : 0;
   }
-  return make_elastic_block(cells_of(chosen, properties.density, properties.plasticity), mesh_.rest_positions,
-                            properties.material, properties.damping, properties.precision);
+  return make_elastic_block(cells_of(chosen, properties), mesh_.rest_positions, properties.material,
+                            properties.damping, properties.precision);
 }
 
 void ElasticForces::separate(std::vector<SeparateCells> separate_cells) {

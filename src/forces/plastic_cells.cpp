@@ -18,12 +18,14 @@ using kernels::plastic_numbers;
 
 static_assert(PlasticCells::numbers_per_point == plastic_numbers);
 
-PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block)
+PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block, DeformShapes deform_shapes)
     : block_(block),
-      layout_(rest_layout(block.shape_data, block.element.nodes(), block.element.points())),
+      deform_shapes_(deform_shapes),
       rest_shapes_(block.shapes.size()),
       state_(block.cell_of_lane.size() * block.element.points() * plastic_numbers),
-      drift_(static_cast<std::size_t>(block.batches())),
+      drift_(block.cell_of_lane.size()),
+      settled_largest_(block.cell_of_lane.size()),
+      settled_spin_(block.cell_of_lane.size()),
       slot_of_cell_(static_cast<std::size_t>(block.cells)) {
   for (std::size_t i = 0; i < rest_shapes_.size(); ++i) rest_shapes_[i] = block.shapes[i];
   for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
@@ -167,39 +169,42 @@ double PlasticCells::volume_ratio(LocalIndex cell) const {
   return mean(slot, [&](std::size_t q) { return determinant(deformation(slot, q)); });
 }
 
-std::size_t PlasticCells::numbers_per_cell() const { return block_.element.points() * plastic_numbers; }
+std::size_t PlasticCells::numbers_per_cell() const {
+  return block_.element.points() * plastic_numbers + numbers_besides;
+}
+
+void PlasticCells::settle(std::size_t slot, float largest, float spin) {
+  settled_largest_[slot] = largest;
+  settled_spin_[slot] = spin;
+  drift_[slot] = 0;
+}
+
+void PlasticCells::exchange_shapes() {
+  std::swap_ranges(rest_shapes_.begin(), rest_shapes_.end(), arrays_.shapes);
+}
 
 void PlasticCells::get(LocalIndex cell, std::span<double> numbers) const {
   EVERT_ASSERT(numbers.size() == numbers_per_cell(), std::to_string(numbers.size()));
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    numbers[i] = state_[index(slot_of(cell), i / plastic_numbers, i % plastic_numbers)];
+  const auto slot = slot_of(cell);
+  const std::size_t of_points = numbers.size() - numbers_besides;
+  for (std::size_t i = 0; i < of_points; ++i)
+    numbers[i] = state_[index(slot, i / plastic_numbers, i % plastic_numbers)];
+  numbers[of_points] = settled_largest_[slot];
+  numbers[of_points + 1] = settled_spin_[slot];
+  numbers[of_points + 2] = drift_[slot];
 }
 
 void PlasticCells::set(LocalIndex cell, std::span<const double> numbers) {
   EVERT_ASSERT(numbers.size() == numbers_per_cell(), std::to_string(numbers.size()));
   const auto slot = slot_of(cell);
-  for (std::size_t i = 0; i < numbers.size(); ++i)
+  const std::size_t of_points = numbers.size() - numbers_besides;
+  for (std::size_t i = 0; i < of_points; ++i)
     state_[index(slot, i / plastic_numbers, i % plastic_numbers)] = numbers[i];
-  for (std::size_t q = 0; q < block_.element.points(); ++q) set_shapes(slot, q);
-  constexpr float unsettled = 1e3F;
-  drift_[slot / static_cast<std::size_t>(block_.lanes)] = unsettled;
-}
-
-/// As keep_deformation() of plastic_flow.hpp, number by number.
-void PlasticCells::set_shapes(std::size_t slot, std::size_t q) {
-  const auto number = [&](std::size_t i) { return state_[index(slot, q, i)]; };
-  const auto l =
-      inverse(LowerTriangle<double>{number(0), number(1), number(2), number(3), number(4), number(5)});
-  const auto lanes = static_cast<std::size_t>(block_.lanes);
-  const std::size_t first =
-      (slot / lanes * block_.element.points() + q) * layout_.numbers() * lanes + slot % lanes;
-  for (std::size_t j = 0; j < layout_.vectors; ++j) {
-    const auto at = [&](std::size_t k) { return first + (layout_.begin(j) + k) * lanes; };
-    Vec3d v{0, 0, 0};
-    for (std::size_t k = 0; k < layout_.components(j); ++k) v[k] = rest_shapes_[at(k)];
-    const Vec3d flown = kernels::times_inverse(v, l);
-    for (std::size_t k = 0; k < layout_.components(j); ++k) arrays_.shapes[at(k)] = flown[k];
-  }
+  const auto batch = static_cast<LocalIndex>(slot / static_cast<std::size_t>(block_.lanes));
+  deform_shapes_(arrays_, {batch, batch + 1});
+  settled_largest_[slot] = static_cast<float>(numbers[of_points]);
+  settled_spin_[slot] = static_cast<float>(numbers[of_points + 1]);
+  drift_[slot] = static_cast<float>(numbers[of_points + 2]);
 }
 
 Mat3d PlasticCells::rotation(std::size_t slot, std::size_t q) const {
@@ -214,7 +219,7 @@ Mat3d PlasticCells::inverse_stretch(LocalIndex cell, std::size_t q) const {
 
 std::size_t PlasticCells::memory() const {
   return (rest_shapes_.capacity() + state_.capacity() + goal_.capacity()) * sizeof(double) +
-         drift_.capacity() * sizeof(float) + slot_of_cell_.capacity() * sizeof(LocalIndex);
+         3 * drift_.capacity() * sizeof(float) + slot_of_cell_.capacity() * sizeof(LocalIndex);
 }
 
 }  // namespace evert

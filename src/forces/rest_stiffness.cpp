@@ -91,25 +91,21 @@ RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> 
                              const PlasticCells* flown) {
   const auto slots = block.cell_of_lane.size();
   RestStiffness stiffness{AlignedVector<float>(slots, 0.0F), AlignedVector<float>(slots, 0.0F)};
-  update_rest_stiffness(block, mass_shares, lame, flown, {0, block.batches()}, stiffness);
+  for (std::size_t slot = 0; slot < slots; ++slot)
+    if (block.cell_of_lane[slot] >= 0)
+      update_rest_stiffness(block, mass_shares, lame, flown, slot, stiffness);
   return stiffness;
 }
 
 void update_rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares, const Lame& lame,
-                           const PlasticCells* flown, BatchRange batches, RestStiffness& stiffness) {
+                           const PlasticCells* flown, std::size_t slot, RestStiffness& stiffness) {
   const std::size_t nodes = block.element.nodes();
-  const auto lanes = static_cast<std::size_t>(block.lanes);
-  for (auto slot = static_cast<std::size_t>(batches.begin) * lanes;
-       slot < static_cast<std::size_t>(batches.end) * lanes; ++slot) {
-    if (block.cell_of_lane[slot] < 0) continue;
-    const auto masses =
-        mass_shares.subspan(nodes * static_cast<std::size_t>(block.cell_of_lane[slot]), nodes);
-    const CellStiffness of_cell = block.element.points() == 1
-                                      ? one_point_stiffness(rest_point(block, slot, 0), masses, lame)
-                                      : dense_stiffness(block, flown, slot, masses, lame);
-    stiffness.largest[slot] = rounded_up(of_cell.largest);
-    stiffness.spin[slot] = rounded_up(of_cell.spin);
-  }
+  const auto masses = mass_shares.subspan(nodes * static_cast<std::size_t>(block.cell_of_lane[slot]), nodes);
+  const CellStiffness of_cell = block.element.points() == 1
+                                    ? one_point_stiffness(rest_point(block, slot, 0), masses, lame)
+                                    : dense_stiffness(block, flown, slot, masses, lame);
+  stiffness.largest[slot] = rounded_up(of_cell.largest);
+  stiffness.spin[slot] = rounded_up(of_cell.spin);
 }
 
 double stiffness_growth(double drift, const Lame& lame) {

@@ -31,9 +31,9 @@ struct RestStiffness {
 /// flat cell, the large eigenvalue of Γ does not count. Cells of several points are not looked into: λ_e.
 [[nodiscard]] RestStiffness rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares,
                                            const Lame& lame, const PlasticCells* flown = nullptr);
-/// The same of some batches anew. `flown`: what has flown in the block, if anything can.
+/// The same of the cell in one lane anew. `flown`: what has flown in the block, if anything can.
 void update_rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares, const Lame& lame,
-                           const PlasticCells* flown, BatchRange batches, RestStiffness& stiffness);
+                           const PlasticCells* flown, std::size_t slot, RestStiffness& stiffness);
 
 /// λ_e grows at most by this factor when log F_p goes a way of length `drift`: with F_p⁻¹ then F_p⁻¹ (I + E),
 /// ‖E‖ ≤ s = e^drift − 1, a gradient G becomes G (I + E), and 2μ‖G‖² + λ(tr G)² at most (1 + s)² (1 + sλ/2μ)

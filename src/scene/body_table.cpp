@@ -82,6 +82,19 @@ void drop_what_is_none(BodyConfig& body, const Value& /*map*/, const std::string
   if (body.start && body.start->kind == StartKind::none) body.start.reset();
 }
 
+/// Throws where a model has no dilatation whose mean could be taken.
+void check_dilatation(BodyConfig& body, const Value& map, const std::string& path) {
+  if (!body.mean_dilatation) return;
+  const auto check = [&](const MaterialConfig& material) {
+    if (material.model != MaterialModel::neo_hookean && material.model != MaterialModel::rotated_linear)
+      fail(*map.find("mean_dilatation"), join(path, "mean_dilatation"),
+           "goes with 'model: neo_hookean' and 'rotated_linear', not with '" + name_of(material.model) + "'");
+  };
+  check(body.material);
+  for (const auto& group : body.groups)
+    if (group.material) check(*group.material);
+}
+
 const Table<GroupConfig>& group_table() {
   static const auto table =
       Table<GroupConfig>("A named volume group of the mesh; what it does not say is as in the body.")
@@ -163,6 +176,12 @@ const Table<BodyConfig>& body_table() {
               "constant outside. Without it muscle is not active.")
           .optional("plasticity", &BodyConfig::plasticity, table_of(plasticity_table()),
                     "{yield_strain: 0.05}", "Permanent deformation; without it the body is elastic.")
+          .optional("mean_dilatation", &BodyConfig::mean_dilatation, yes_or_no(), "true",
+                    "Of elements with several points (all but tet4) of neo_hookean and rotated_linear: "
+                    "changes of volume "
+                    "are resisted by their mean over the element, which then does not lock where the volume "
+                    "is nearly "
+                    "kept, as in isochoric flow.")
           .optional("precision", &BodyConfig::precision,
                     one_of<Precision>({{"double", Precision::full, "everything in double"},
                                        {"mixed", Precision::mixed,
@@ -174,7 +193,8 @@ const Table<BodyConfig>& body_table() {
                     "Volume groups of the mesh that differ from the body, by name.")
           .then(drop_what_is_none)
           .then(check_fibres)
-          .then(check_plasticity);
+          .then(check_plasticity)
+          .then(check_dilatation);
   return table;
 }
 

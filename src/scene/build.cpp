@@ -174,8 +174,13 @@ ElasticProperties properties_of(const BodyConfig& body, int group) {
     if (own.damping) damping = own.damping;
     if (own.plasticity) plasticity = own.plasticity;
   }
-  return {density,        material_of(material),    damping_of(damping, material),
-          body.precision, mass_damping_of(damping), plasticity_of(plasticity, material)};
+  return {density,
+          material_of(material),
+          damping_of(damping, material),
+          body.precision,
+          mass_damping_of(damping),
+          plasticity_of(plasticity, material),
+          body.mean_dilatation};
 }
 
 BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {

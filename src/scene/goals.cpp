@@ -93,7 +93,7 @@ void broadcast(MPI_Comm comm, std::vector<Vec3d>& vectors) {
   for (std::size_t i = 0; i < flat.size(); i += 3) vectors.push_back({flat[i], flat[i + 1], flat[i + 2]});
 }
 
-using Position = ElasticForces::GoalPosition;
+using Position = decltype(FlowGoal::position);
 
 std::size_t local_node(const DistributedMesh& mesh, std::size_t entry, LocalIndex cell, std::size_t node) {
   const auto& cells = mesh.cells[entry];
@@ -105,9 +105,10 @@ std::size_t local_node(const DistributedMesh& mesh, std::size_t entry, LocalInde
 Position positions_of_nodes(const DistributedMesh& mesh, const BodyRange& body, std::vector<Vec3d>& nodes) {
   broadcast(mesh.comm, nodes);
   const auto shared = std::make_shared<const std::vector<Vec3d>>(std::move(nodes));
-  return [&mesh, first = body.first_node, shared](std::size_t entry, LocalIndex cell, std::size_t node) {
-    return (
-        *shared)[static_cast<std::size_t>(mesh.original_nodes[local_node(mesh, entry, cell, node)] - first)];
+  return [first = body.first_node, shared](const DistributedMesh& at, std::size_t entry, LocalIndex cell,
+                                           std::size_t node) {
+    const auto number = at.original_nodes[local_node(at, entry, cell, node)];
+    return (*shared)[static_cast<std::size_t>(number - first)];
   };
 }
 
@@ -125,17 +126,17 @@ Position positions_of_cells(const DistributedMesh& mesh, BodyGoal& goal) {
     auto& matrix = (*by_cell)[static_cast<GlobalIndex>(flat[i])];
     for (std::size_t k = 0; k < 9; ++k) matrix(k % 3, k / 3) = flat[i + 1 + k];
   }
-  return [&mesh, by_cell](std::size_t entry, LocalIndex cell, std::size_t node) {
-    const auto number = mesh.cells[entry].global_ids[static_cast<std::size_t>(cell)];
-    return by_cell->at(number) * mesh.rest_positions[local_node(mesh, entry, cell, node)];
+  return [by_cell](const DistributedMesh& at, std::size_t entry, LocalIndex cell, std::size_t node) {
+    const auto number = at.cells[entry].global_ids[static_cast<std::size_t>(cell)];
+    return by_cell->at(number) * at.rest_positions[local_node(at, entry, cell, node)];
   };
 }
 
 template <class Map>
-Position positions_of_map(const DistributedMesh& mesh, const BodyRange& body, const Map& map) {
-  return [&mesh, map, middle = 0.5 * (body.lower + body.upper)](std::size_t entry, LocalIndex cell,
-                                                                std::size_t node) {
-    return mapped(map, mesh.rest_positions[local_node(mesh, entry, cell, node)] - middle);
+Position positions_of_map(const BodyRange& body, const Map& map) {
+  return [map, middle = 0.5 * (body.lower + body.upper)](const DistributedMesh& at, std::size_t entry,
+                                                         LocalIndex cell, std::size_t node) {
+    return mapped(map, at.rest_positions[local_node(at, entry, cell, node)] - middle);
   };
 }
 
@@ -167,7 +168,7 @@ std::vector<FlowGoal> flow_goals(const DistributedMesh& mesh, const SceneConfig&
           } else if constexpr (std::is_same_v<Shape, DeformationGoal>) {
             return positions_of_cells(mesh, goal);
           } else {
-            return positions_of_map(mesh, whole.bodies[b], shape);
+            return positions_of_map(whole.bodies[b], shape);
           }
         },
         config.shape);

@@ -13,7 +13,7 @@ namespace evert {
                                  const std::string& path);
 
 /// Collective; `whole` is of rank 0, but for the ranges of its bodies and what its regions are. The goals of
-/// all regions. `mesh` must outlive them.
+/// all regions.
 [[nodiscard]] std::vector<FlowGoal> flow_goals(const DistributedMesh& mesh, const SceneConfig& scene,
                                                SceneMesh& whole);
 

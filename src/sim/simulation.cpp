@@ -68,6 +68,13 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[9], values[10], values[11]}};
 }
 
+/// Throws UserError where tangents are asked for that nobody computes.
+void require_known_tangents(const SimulationDefinition& definition) {
+  if (definition.method == IntegrationMethod::quasistatic &&
+      std::ranges::any_of(definition.properties, &ElasticProperties::mean_dilatation))
+    throw UserError("mean_dilatation: does not go with 'integrator.method: quasistatic'");
+}
+
 /// Throws UserError where flow and the way to advance do not go together.
 void require_steps_that_flow(const SimulationDefinition& definition) {
   const bool flows = std::ranges::any_of(
@@ -84,6 +91,7 @@ void require_steps_that_flow(const SimulationDefinition& definition) {
 /// Contact, friction and schemes without solves know masses of nodes, and what is at rest knows none.
 MassForm possible_mass(const SimulationDefinition& definition) {
   require_steps_that_flow(definition);
+  require_known_tangents(definition);
   if (definition.mass == MassForm::consistent &&
       (!definition.obstacles.empty() || definition.method != IntegrationMethod::newmark))
     throw UserError(
@@ -128,10 +136,14 @@ std::unique_ptr<ImplicitStrains> make_implicit_strains(const DistributedMesh& me
 
 /// Collective. Throws UserError on all ranks, with some of the cells, where the goal is none that can be
 /// reached.
-void set_goal(ElasticForces& elastic, MPI_Comm comm, const FlowGoal& goal) {
+void set_goal(ElasticForces& elastic, const DistributedMesh& mesh, const FlowGoal& goal) {
   constexpr std::size_t shown = 8;
   constexpr GlobalIndex none = std::numeric_limits<GlobalIndex>::max();
-  auto refused = elastic.set_goal(goal.region, goal.control, goal.position);
+  MPI_Comm comm = mesh.comm;
+  auto refused =
+      elastic.set_goal(goal.region, goal.control, [&](std::size_t entry, LocalIndex cell, std::size_t node) {
+        return goal.position(mesh, entry, cell, node);
+      });
   auto count = static_cast<GlobalIndex>(refused.size());
   MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, comm);
   if (count == 0) return;
@@ -181,7 +193,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
-  for (const auto& goal : definition.goals) set_goal(elastic_, mesh_.comm, goal);
+  for (const auto& goal : definition.goals) set_goal(elastic_, mesh_, goal);
   system_.projection = projection_.get();
   set_owned(system_.x, definition.initial_positions);
   set_owned(system_.v, definition.initial_velocities);
@@ -480,9 +492,9 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   std::fill(system_.obstacle_impulses.begin(), system_.obstacle_impulses.end(), ObstacleImpulse{});
   for (const auto& obstacle : obstacles()) obstacle->move_to({.end = system_.time, .dt = 1});
   rigid_.restore(bodies, time);
-  for (std::size_t e = 0; e < flow.size(); ++e) elastic_.set_flow(e, flow[e]);
   forces_stale_ = true;
   while (events_done_ < std::min(events_done, events_.size())) events_[events_done_++].apply(*this);
+  for (std::size_t e = 0; e < flow.size(); ++e) elastic_.set_flow(e, flow[e]);
   refresh_forces();
   time_step_.restore(control);  // after the events, which reset it
   agree_on_state();

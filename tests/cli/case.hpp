@@ -47,6 +47,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> rigid_cases();
 [[nodiscard]] std::vector<Case> explicit_cases();
 [[nodiscard]] std::vector<Case> stability_cases();
+[[nodiscard]] std::vector<Case> plasticity_cases();
 
 // --- good input to spoil
 

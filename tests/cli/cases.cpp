@@ -516,11 +516,17 @@ std::vector<Case> cut_meshes() {
 const std::vector<Case>& all_cases() {
   static const auto cases = [] {
     std::vector<Case> all;
-    for (const auto& group :
-         {good_runs,         views,          material_cases(), quasistatic_cases(), explicit_cases(),
-          stability_cases(), filter_cases(), mass_cases(),     shape_cases(),       bad_mesh_cases(),
-          motion_cases(),    rigid_cases(),  bad_commands,     bad_scenes,          bad_meshes,
-          cut_meshes(),      fibre_cases(),  failures,         bad_output,          bad_restarts})
+    for (const auto& group : {good_runs,         views,
+                              material_cases(),  quasistatic_cases(),
+                              explicit_cases(),  plasticity_cases(),
+                              stability_cases(), filter_cases(),
+                              mass_cases(),      shape_cases(),
+                              bad_mesh_cases(),  motion_cases(),
+                              rigid_cases(),     bad_commands,
+                              bad_scenes,        bad_meshes,
+                              cut_meshes(),      fibre_cases(),
+                              failures,          bad_output,
+                              bad_restarts})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

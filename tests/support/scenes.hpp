@@ -45,17 +45,19 @@ inline double run_until(Simulation& simulation, double end) {
 /// What a checkpoint holds of a simulation.
 class KeptState {
  public:
-  explicit KeptState(const Simulation& simulation) : scalars_(simulation.state_scalars()) {
+  explicit KeptState(const Simulation& simulation)
+      : scalars_(simulation.state_scalars()), flow_(simulation.flow_state()) {
     const auto [x, v, changes] = simulation.node_state();
     x_.assign(x.begin(), x.end());
     v_.assign(v.begin(), v.end());
     changes_.assign(changes.begin(), changes.end());
   }
-  void restore(Simulation& simulation) const { simulation.restore({x_, v_, changes_}, scalars_); }
+  void restore(Simulation& simulation) const { simulation.restore({x_, v_, changes_}, scalars_, flow_); }
 
  private:
   std::vector<double> x_, v_, changes_;
   std::vector<StateScalar> scalars_;
+  FlowState flow_;
 };
 
 /// Largest difference of two arrays.

@@ -98,7 +98,8 @@ class ElasticBlock {
   /// in a step; relative to the stretch where that exceeds 1.
   [[nodiscard]] virtual double max_strain_rate(const double* x, const double* v) const = 0;
 
-  /// λ_e [1/s²] of a cell: the largest eigenvalue of its stiffness at rest against its shares of mass.
+  /// λ_e [1/s²] of a cell: the largest eigenvalue of its stiffness at rest against its shares of mass; as it
+  /// was made, whatever has flown since, so that the shares do not depend on when they are made.
   [[nodiscard]] virtual double rest_stiffness_of(LocalIndex cell) const = 0;
   /// The shares of the masses of its nodes [kg] that each cell is credited with in stable_step, node_count
   /// per cell; its own masses unless told otherwise. They must sum to the mass of every node, over all
@@ -125,7 +126,8 @@ struct ElasticCells {
   LocalIndex interior = 0;            ///< cells [0, interior) touch owned nodes only
   double density = 0;                 ///< [kg/m^3]
   std::span<const Vec3d>
-      fibres{};  ///< per cell, for models with fibres: their direction at rest, of length 1
+      fibres{};                  ///< per cell, for models with fibres: their direction at rest, of length 1
+  bool mean_dilatation = false;  ///< of models with a dilatation, in cells of several points (dilatation.hpp)
   std::optional<Plasticity> plasticity{};  ///< of isotropic models in double; empty: nothing flows
 };
 

@@ -23,6 +23,7 @@ struct ElasticProperties {
   /// A force −a m v on every node, a in [1/s]; empty: none, and none later either.
   std::optional<double> mass_proportional_damping{};
   std::optional<Plasticity> plasticity{};  ///< of isotropic models in double; empty: nothing flows
+  bool mean_dilatation = false;            ///< see ElasticCells
 };
 
 /// Cells of one entry of DistributedMesh::cells whose forces are of another kind than those of its region.

@@ -16,12 +16,14 @@ namespace evert {
 /// nothing after it was made.
 class PlasticCells {
  public:
+  using DeformShapes = void (*)(const kernels::PlasticArrays&, BatchRange);
   /// Of a block in double, whose shape data are those at rest and which outlives it: nothing has flown.
-  PlasticCells(const Plasticity& law, ElementBlock& block);
+  PlasticCells(const Plasticity& law, ElementBlock& block, DeformShapes deform_shapes);
 
   [[nodiscard]] const Plasticity& law() const { return arrays_.law; }
   void set_law(const Plasticity& law);
-  /// The times of the last update of the forces and of the next one [s]; the same unless told otherwise.
+  /// The times of the last update of the forces and of the next one [s]. The same unless told otherwise, and
+  /// then nothing flows.
   void set_times(double last, double next);
   /// From now on flow is controlled. The goal of a point is the deformation that brings the nodes of its cell
   /// to `position(cell, node of the cell)` [m], without its rotation. Returns the cells, ascending, whose
@@ -44,13 +46,23 @@ class PlasticCells {
   /// Numbers that a cell remembers, and these; they mean the same in any block of the same cell, so that they
   /// can be kept and brought back bit by bit.
   static constexpr std::size_t numbers_per_point = 9;
+  static constexpr std::size_t numbers_besides = 3;
   [[nodiscard]] std::size_t numbers_per_cell() const;
   void get(LocalIndex cell, std::span<double> numbers) const;
   void set(LocalIndex cell, std::span<const double> numbers);
 
-  /// By how much rest stiffness may have grown in a batch since it was last settled, see settle(): Σ Δα.
-  [[nodiscard]] std::span<const float> drift() const { return drift_; }
-  void settle(LocalIndex batch) { drift_[static_cast<std::size_t>(batch)] = 0; }
+  /// The rest stiffness that a cell had when it was last computed, in lane number `slot`, and the way that
+  /// log F_p has gone since; part of what it remembers, so that a restart has the same steps.
+  struct Stiffness {
+    float largest, spin;  ///< as RestStiffness [1/s²]
+    float drift;          ///< Σ of the largest Δα of its points
+  };
+  [[nodiscard]] Stiffness stiffness(std::size_t slot) const {
+    return {settled_largest_[slot], settled_spin_[slot], drift_[slot]};
+  }
+  void settle(std::size_t slot, float largest, float spin);
+  /// Gives the block its shape data as it was made, and takes them back when called again.
+  void exchange_shapes();
   /// The rotation R of F_p = R S as it is kept, S symmetric, of the cell in lane number `slot`: Rᵀ turns its
   /// shape data to those of S⁻¹, which points of one cell have in common.
   [[nodiscard]] Mat3d rotation(std::size_t slot, std::size_t q) const;
@@ -68,16 +80,15 @@ class PlasticCells {
   [[nodiscard]] double sum(std::size_t number) const;
   template <class ValueOf>
   [[nodiscard]] double mean(std::size_t slot, ValueOf&& value_of) const;
-  void set_shapes(std::size_t slot, std::size_t q);
   [[nodiscard]] double volume(std::size_t slot, std::size_t q) const;
   [[nodiscard]] Mat3d goal(std::size_t slot, std::size_t q) const;
 
   ElementBlock& block_;
-  ShapeLayout layout_;
+  DeformShapes deform_shapes_;
   AlignedVector<double> rest_shapes_, state_;
   AlignedVector<double> goal_;  // [batch][point] of goal_numbers [lane], where there is a control
   PlasticControl control_;
-  AlignedVector<float> drift_;
+  AlignedVector<float> drift_, settled_largest_, settled_spin_;  // [batch][lane]
   std::vector<LocalIndex> slot_of_cell_;
   kernels::PlasticArrays arrays_;
 };

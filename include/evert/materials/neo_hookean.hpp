@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/materials/compression_limit.hpp"
+#include "evert/materials/dilatation.hpp"
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
 
@@ -51,6 +52,13 @@ struct NeoHookean {
       return mu * at.sigma[i] + (pressure + mu * at.ratio[i]) * at.inverse[i];
     };
     return {along(0), along(1), along(2)};
+  }
+
+  /// L and 1/c.
+  template <class T>
+  EVERT_ALWAYS_INLINE Dilatation<T> dilatation(const Vec3<T>& sigma) const {
+    const Logarithms<T> at = logarithms(sigma);
+    return {at.volume_log, at.inverse};
   }
 
   /// ∂²ψ/∂σ² [Pa], symmetric; with `clamp` that at the limited stretches.

@@ -1,4 +1,5 @@
 #pragma once
+#include "evert/materials/dilatation.hpp"
 #include "evert/materials/lame.hpp"
 #include "evert/math/vec3.hpp"
 
@@ -28,6 +29,13 @@ struct RotatedLinear {
     const Vec3<T> strain = strains(sigma);
     const T pressure = T(lame.lambda) * (strain[0] + strain[1] + strain[2]);
     return T(2 * lame.mu) * strain + Vec3<T>{pressure, pressure, pressure};
+  }
+
+  /// The trace of the strain.
+  template <class T>
+  EVERT_ALWAYS_INLINE Dilatation<T> dilatation(const Vec3<T>& sigma) const {
+    const Vec3<T> strain = strains(sigma);
+    return {strain[0] + strain[1] + strain[2], {T(1.0), T(1.0), T(1.0)}};
   }
 
   /// ∂²ψ/∂σ² [Pa], symmetric.

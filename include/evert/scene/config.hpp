@@ -212,6 +212,7 @@ struct BodyConfig {
   std::optional<FibreConfig> fibres;           ///< there exactly when some material needs it
   std::optional<ActivationConfig> activation;  ///< of muscle; empty: not active
   std::optional<PlasticityConfig> plasticity;  ///< empty: the body is elastic
+  bool mean_dilatation = false;                ///< of neo_hookean and rotated_linear
   Precision precision = Precision::full;
   std::vector<GroupConfig> groups;
 };

@@ -28,7 +28,9 @@ struct FlowGoal {
   std::int32_t region = 0;
   std::string name;  ///< for messages
   PlasticControl control;
-  ElasticForces::GoalPosition position;
+  /// Where the node of a cell is to be [m], see ElasticForces::set_goal.
+  std::function<Vec3d(const DistributedMesh& mesh, std::size_t entry, LocalIndex cell, std::size_t node)>
+      position;
 };
 
 /// Everything a simulation is made of, as values. Lists that the scene leaves empty stay empty.

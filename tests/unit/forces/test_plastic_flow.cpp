@@ -22,7 +22,9 @@ ElasticCells plastic_cells(const Body& body, const Plasticity& law) {
 
 std::unique_ptr<ElasticBlock> plastic_block(const Body& body, const Material& material, const Plasticity& law,
                                             const Damping& damping = no_damping) {
-  return make_elastic_block(plastic_cells(body, law), body.rest, material, damping);
+  auto block = make_elastic_block(plastic_cells(body, law), body.rest, material, damping);
+  block->plastic()->set_times(0, 1);
+  return block;
 }
 
 /// A unit cube that is deformed as a whole: F is the same at all of its points.
@@ -33,7 +35,7 @@ class Cube {
       : body_(box(type, 1, 1, 1, 1, 0)), block_(plastic_block(body_, material, law)) {}
 
   /// The forces at F, after flow; `dt` is the time since the last call.
-  NodalValues deform(const Mat3d& f, double dt = 0) {
+  NodalValues deform(const Mat3d& f, double dt = 1) {
     x_ = deformed(body_, [&](const Vec3d& p) { return f * p; });
     block_->plastic()->set_times(0, dt);
     return forces(*block_, x_);
@@ -223,7 +225,8 @@ TEST(PlasticFlow, TakesEnergyOnTenThousandRandomPaths) {
   EXPECT_GT(inverted, 3000);
 }
 
-/// What forces do on a path that flows is kept as energy or spent as work on flow, to first order in the steps.
+/// What forces do on a path that flows is kept as energy or spent as work on flow, to first order in the
+/// steps.
 TEST(PlasticFlow, SpendsWhatForcesDo) {
   const Body body = box(CellType::hex8, 1, 1, 1, 1, 0);
   for (const auto& material : isotropic) {

@@ -18,7 +18,7 @@ struct PlasticArrays {
   double* state = nullptr;              ///< [batch][point] of plastic_numbers [lane], see plastic_flow.hpp
   const double* goal = nullptr;  ///< [batch][point] of goal_numbers [lane]; null where no control is in force
   double attraction = 0;         ///< what log F_p goes of its way to the goal by itself, in [0, 1)
-  float* drift = nullptr;        ///< [batch] Σ of the largest Δα of its points since it was last cleared
+  float* drift = nullptr;  ///< [batch][lane] Σ of the largest Δα of a cell's points since it was last cleared
 };
 
 /// The arrays of an ElementBlock and what goes with it, as the kernels see them. `void` stands for the scalar
@@ -33,6 +33,7 @@ struct BlockArrays {
   void* damping_state;             ///< see damping_kernels.hpp
   const void* fibres;              ///< [batch][point][3][lane]; null where the model has none
   const PlasticArrays* plastic;    ///< null where nothing flows
+  bool mean_dilatation;            ///< of models with a dilatation, in cells of several points
 };
 
 /// The model that the kernel was chosen by.

@@ -18,7 +18,8 @@ struct ElasticKernels {
   bool rotated_gradients = false;  ///< the damping state holds h_a, in the form of the shape data, not A
                                    ///< (damping_kernels.hpp)
   bool fibres = false;             ///< they read BlockArrays::fibres
-  bool flows = false;              ///< they know BlockArrays::plastic
+  void (*deform_shapes)(const PlasticArrays&,
+                        BatchRange) = nullptr;  ///< null where they know no BlockArrays::plastic
   void (*update)(const BlockArrays&, const Material&, const double* x, double* f, BatchRange) = nullptr;
   void (*add_damping)(const BlockArrays&, const Damping&, double factor, const double* v, double* out,
                       BatchRange) = nullptr;  ///< null without damping, as the next one

@@ -23,6 +23,22 @@ EVERT_STAGE void principal_stress_stage(const Model& model, const BlockArrays& b
   }
 }
 
+/// The mean over a cell in the place of the dilatation of each of its points, in its stress.
+template <Real T, const auto& element, HasDilatation Model>
+EVERT_STAGE void mean_dilatation_stage(const Model& model, const BlockArrays& block, BatchRange batches,
+                                       PointRun<T>& run) {
+  std::size_t first = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
+    const CellBatch<T, element> batch(block, b);
+    const T mean = mean_dilatation<T, element>(model, batch, run, first);
+    for (std::size_t q = 0; q < element.points; ++q) {
+      const auto here = model.dilatation(principal_stretches(run.plane[first + q]));
+      run.principal[first + q] +=
+          (-batch.volume(q) * T(model.lame.lambda) * (mean - here.value)) * here.slope;
+    }
+  }
+}
+
 /// f −= G = P B_m, with `stress_of(i)` = −|∂X/∂ξ| W P at point i of the run.
 template <Real T, const auto& element, class StressOf>
 EVERT_ALWAYS_INLINE void add_nodal_forces(const BlockArrays& block, BatchRange batches, double* f,
@@ -95,6 +111,9 @@ EVERT_ALWAYS_INLINE void add_forces(const Model& model, const BlockArrays& block
       nodal_force_stage<T, element>(block, piece, run, pulls.data(), f);
     } else {
       principal_stress_stage<T, element>(model, block, piece, run);
+      if constexpr (element.points > 1 && HasDilatation<Model>) {
+        if (block.mean_dilatation) mean_dilatation_stage<T, element>(model, block, piece, run);
+      }
       nodal_force_stage<T, element>(block, piece, run, f);
     }
     if constexpr (damping != DampingModel::none) keep_damping_state<T, element, damping>(block, piece, run);

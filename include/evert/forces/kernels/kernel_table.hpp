@@ -19,7 +19,6 @@ constexpr ElasticKernels kernels_of() {
       .damping_numbers = static_cast<int>(damping_numbers<element, damping>),
       .rotated_gradients = keeps_rotated_gradients<element, damping>,
       .fibres = HasFibres<Model>,
-      .flows = MayFlow<T, Model>,
       .update = update<T, element, Model, damping>,
       .energy = energy<T, element, Model>,
       .min_stretch = min_stretch<T, element>,
@@ -27,6 +26,7 @@ constexpr ElasticKernels kernels_of() {
       .stable_step = stable_step<T, element, Model>,
       .max_strain_rate = max_strain_rate<T, element, damping>,
   };
+  if constexpr (MayFlow<T, Model>) table.deform_shapes = deform_shapes<T, element>;
   if constexpr (damping != DampingModel::none) {
     table.add_damping = add_damping<T, element, damping>;
     table.add_damping_diagonal = add_damping_diagonal<T, element, damping>;

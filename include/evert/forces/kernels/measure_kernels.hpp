@@ -45,6 +45,35 @@ EVERT_ALWAYS_INLINE T energy_density(const Model& model, const BlockArrays& bloc
   }
 }
 
+/// Over the volume of a cell whose points begin at `first` of a run.
+template <Real T, const auto& element, HasDilatation Model>
+EVERT_ALWAYS_INLINE T mean_dilatation(const Model& model, const CellBatch<T, element>& batch,
+                                      const PointRun<T>& run, std::size_t first) {
+  T sum = T(0.0), volume = T(std::numeric_limits<scalar_t<T>>::min());  // 0 in padding lanes
+  for (std::size_t q = 0; q < element.points; ++q) {
+    sum += batch.volume(q) * model.dilatation(principal_stretches(run.plane[first + q])).value;
+    volume += batch.volume(q);
+  }
+  return sum / volume;
+}
+
+/// What the mean dilatation changes of the energy of the cells of a run [J].
+template <Real T, const auto& element, HasDilatation Model>
+EVERT_ALWAYS_INLINE T energy_of_mean_dilatation(const Model& model, const BlockArrays& block,
+                                                BatchRange batches, const PointRun<T>& run) {
+  T change = T(0.0);
+  std::size_t first = 0;
+  for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
+    const CellBatch<T, element> batch(block, b);
+    const T mean = mean_dilatation<T, element>(model, batch, run, first);
+    for (std::size_t q = 0; q < element.points; ++q) {
+      const T here = model.dilatation(principal_stretches(run.plane[first + q])).value;
+      change += T(0.5 * model.lame.lambda) * batch.volume(q) * (mean * mean - here * here);
+    }
+  }
+  return change;
+}
+
 /// Elastic energy of any model [J].
 template <Real T, const auto& element, class Model>
 EVERT_ALWAYS_INLINE double sum_of_energy(const Model& model, const BlockArrays& block, const double* x,
@@ -57,6 +86,9 @@ EVERT_ALWAYS_INLINE double sum_of_energy(const Model& model, const BlockArrays& 
       const PointPlace place = place_of<element>(piece, i);
       const CellBatch<T, element> batch(block, place.batch);
       of_run += batch.volume(place.q) * energy_density<T, element>(model, block, place, run, i);
+    }
+    if constexpr (element.points > 1 && HasDilatation<Model>) {
+      if (block.mean_dilatation) of_run += energy_of_mean_dilatation<T, element>(model, block, piece, run);
     }
     sum += sum_of_lanes(of_run);
   });

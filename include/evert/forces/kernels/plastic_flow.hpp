@@ -230,19 +230,17 @@ EVERT_ALWAYS_INLINE Vec3<T> times_inverse(const Vec3<T>& v, const LowerTriangle<
   return {v[0] * l.l00 + (v[1] * l.l10 + v[2] * l.l20), v[1] * l.l11 + v[2] * l.l21, v[2] * l.l22};
 }
 
-/// Keeps F_p, and turns the shape data at rest into those of F_p⁻¹.
+/// Turns the shape data at rest into those of the present F_p⁻¹.
 template <Real T, const auto& element>
-EVERT_STAGE void keep_deformation(const PlasticArrays& plastic, BatchRange batches,
-                                  const FlowRun<T>& flowing) {
+EVERT_STAGE void deform_shapes(const PlasticArrays& plastic, BatchRange batches) {
   using Shape = RestGradients<T, element>;
   constexpr std::size_t numbers_a_point = Shape::layout.numbers() * lanes_v<T>;
-  std::size_t i = 0;
   for (LocalIndex b = batches.begin; b < batches.end; ++b) {
     const std::size_t first = static_cast<std::size_t>(b) * element.points * numbers_a_point;
     const Shape rest{{plastic.rest_shapes + first}};
-    for (std::size_t q = 0; q < element.points; ++q, ++i) {
-      PlasticPoint<T>::template at<element>(plastic, {b, q}).set_deformation(flowing.after[i]);
-      const LowerTriangle<T> l = inverse(flowing.after[i]);
+    for (std::size_t q = 0; q < element.points; ++q) {
+      const auto point = PlasticPoint<T>::template at<element>(plastic, {b, q});
+      const LowerTriangle<T> l = inverse(point.deformation());
       double* const shape = plastic.shapes + first + q * numbers_a_point;
       for (std::size_t j = 0; j < Shape::layout.vectors; ++j) {
         const Vec3<T> flown = times_inverse(rest.vector(q, j), l);
@@ -251,6 +249,14 @@ EVERT_STAGE void keep_deformation(const PlasticArrays& plastic, BatchRange batch
       }
     }
   }
+}
+
+template <Real T, const auto& element>
+EVERT_STAGE void keep_deformation(const PlasticArrays& plastic, BatchRange batches, std::size_t points,
+                                  const FlowRun<T>& flowing) {
+  for (std::size_t i = 0; i < points; ++i)
+    PlasticPoint<T>::template at<element>(plastic, place_of<element>(batches, i))
+        .set_deformation(flowing.after[i]);
 }
 
 /// Flow takes energy or does not happen: τ : Δ log V, with the Kirchhoff stress τ that is left, is the work
@@ -287,7 +293,8 @@ EVERT_STAGE bool plastic_work_stage(const Model& model, const PlasticArrays& pla
       point.set_alpha(point.alpha() + amount);
       most = max(most, amount);
     }
-    plastic.drift[b] += static_cast<float>(largest_lane(most));
+    for (std::size_t l = 0; l < lanes_v<T>; ++l)
+      plastic.drift[static_cast<std::size_t>(b) * lanes_v<T> + l] += static_cast<float>(lane(most, l));
   }
   return taken_back;
 }
@@ -298,6 +305,7 @@ template <Real T, const auto& element, class Model>
 EVERT_ALWAYS_INLINE void flow(const Model& model, const BlockArrays& block, const double* x,
                               BatchRange batches, PointRun<T>& run, std::size_t points) {
   const PlasticArrays& plastic = *block.plastic;
+  if (!(plastic.dt > 0)) return;  // the same state looked at again: after a restart, or an event
   const bool attracts = plastic.attraction > 0;
   if (!attracts && !may_yield<T, element>(plastic, batches, run, points)) return;
   FlowRun<T> flowing;
@@ -306,7 +314,8 @@ EVERT_ALWAYS_INLINE void flow(const Model& model, const BlockArrays& block, cons
   plastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
   if (plastic.goal != nullptr) control_stage<T, element>(plastic, batches, points, flowing);
   const auto deform = [&] {
-    keep_deformation<T, element>(plastic, batches, flowing);
+    keep_deformation<T, element>(plastic, batches, points, flowing);
+    deform_shapes<T, element>(plastic, batches);
     gather_field_gradients<T, element>(block, x, batches, run.deformation_gradient.data());
     diagonalize(run, points);
   };
