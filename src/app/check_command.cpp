@@ -39,6 +39,14 @@ std::string material_text(const MaterialConfig& material) {
   return model + formatted(", lambda %g Pa, mu %g Pa", lame.lambda, lame.mu);
 }
 
+std::string plasticity_text(const PlasticityConfig& plasticity) {
+  auto text = plasticity.yield_stress ? formatted("yields at %g Pa", *plasticity.yield_stress)
+                                      : formatted("yields at a log strain of %g", *plasticity.yield_strain);
+  if (!plasticity.isochoric) text += ", volume and all";
+  if (plasticity.goal) text += ", led to a goal";
+  return text;
+}
+
 std::string fibre_text(const FibreConfig& fibres) {
   if (const auto* constant = std::get_if<ConstantFibres>(&fibres))
     return "fibres along " + vector_text(constant->direction);
@@ -107,12 +115,14 @@ void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& b
                               (body.precision == Precision::mixed ? ", mixed precision" : ""));
     if (body.fibres) report.line("bodies", "  " + fibre_text(*body.fibres));
     if (body.activation) report.line("bodies", "  " + activation_text(*body.activation));
+    if (body.plasticity) report.line("bodies", "  " + plasticity_text(*body.plasticity));
     for (const auto& group : body.groups)
       report.line("bodies", "  " + group.name + ": " +
                                 formatted("density %g kg/m^3, ", group.density.value_or(body.density)) +
                                 material_text(group.material.value_or(body.material)) + ", " +
                                 damping_text(group.damping ? group.damping : body.damping) +
-                                (group.activation ? ", " + activation_text(*group.activation) : ""));
+                                (group.activation ? ", " + activation_text(*group.activation) : "") +
+                                (group.plasticity ? ", " + plasticity_text(*group.plasticity) : ""));
   }
   for (const auto& cells : mesh.cells)
     if (cells.size() > 0)

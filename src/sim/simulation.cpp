@@ -82,10 +82,9 @@ void require_steps_that_flow(const SimulationDefinition& definition) {
   if (!flows) return;
   if (definition.method == IntegrationMethod::quasistatic)
     throw UserError("plasticity: flow needs time, which 'integrator.method: quasistatic' has none of");
-  if (definition.filter && definition.filter->constraints != FilterConstraints::compliant)
-    throw UserError("filter: softened elements do not flow; with plasticity 'constraints' must be compliant");
-  if (definition.filter && !definition.goals.empty())
-    throw UserError("filter: does not go with a goal of plastic flow");
+  if (definition.filter)
+    throw UserError(
+        "filter: does not go with plasticity: elements are filtered in the shape that they were made in");
 }
 
 /// Contact, friction and schemes without solves know masses of nodes, and what is at rest knows none.
