@@ -98,7 +98,7 @@ void CheckpointObserver::observe(Simulation& simulation, const StepReport& repor
 
 void CheckpointObserver::write(const Simulation& simulation) {
   if (written_at_ == simulation.time()) return;
-  writer_.write(simulation.node_state(), simulation.flow_state(), simulation.state_scalars());
+  writer_.write(simulation.node_state(), simulation.state_scalars(), simulation.flow_state());
   written_at_ = simulation.time();
   written_at_wall_ = MPI_Wtime();
 }

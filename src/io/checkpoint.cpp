@@ -126,8 +126,8 @@ CheckpointWriter::CheckpointWriter(const DistributedMesh& mesh, std::string path
   on_root(mesh.comm, [&] { require_writable(path_); });
 }
 
-void CheckpointWriter::write(const NodeState& nodes, const FlowState& flow,
-                             std::span<const StateScalar> scalars) const {
+void CheckpointWriter::write(const NodeState& nodes, std::span<const StateScalar> scalars,
+                             const FlowState& flow) const {
   const PhaseScope phase(Phase::io);
   const std::string temporary = path_ + ".tmp";
   try {

@@ -473,7 +473,7 @@ TEST_P(OnMesh, GoesOnFromACheckpointOnOtherRanks) {
   };
   const auto write = [](const Simulation& body, const std::string& file) {
     CheckpointWriter(body.mesh(), file, "compliant")
-        .write(body.node_state(), body.flow_state(), body.state_scalars());
+        .write(body.node_state(), body.state_scalars(), body.flow_state());
   };
   const auto go_on = [&](MPI_Comm comm, const std::string& file) {
     const auto body = start(comm);

@@ -1,6 +1,9 @@
 // Bodies that flow: on any number of ranks, restarted, with their energy.
+#include "evert/io/checkpoint.hpp"
+
 #include <gtest/gtest.h>
 
+#include "tests/mpi/io/scratch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <cmath>
@@ -79,6 +82,36 @@ TEST(PlasticRanks, ARestoredRunIsBitwiseEqual) {
     EXPECT_EQ(test::after_steps(*restarted.simulation, 100), uninterrupted);
     EXPECT_EQ(restarted.simulation->measure().plastic_work, after.plastic_work);
   }
+}
+
+/// From files, written by one rank and read by all, and the reverse, in the middle of the flow.
+TEST(PlasticRanks, GoOnFromACheckpointOfOtherRanks) {
+  const test::Scratch scratch;
+  const auto write = [](const Simulation& body, const std::string& file) {
+    CheckpointWriter(body.mesh(), file, "plastic")
+        .write(body.node_state(), body.state_scalars(), body.flow_state());
+  };
+  const auto go_on = [](const std::string& scene, MPI_Comm comm, const std::string& file) {
+    auto body = test::build(scene, {}, comm);
+    const auto kept = read_checkpoint(body.simulation->mesh(), file, "plastic");
+    body.simulation->restore(kept.nodes(), kept.scalars, kept.flow);
+    return test::after_steps(*body.simulation, 100);
+  };
+  double largest = 0;
+  for (const auto& scene : scenes) {
+    auto alone = test::build(scene, {}, PETSC_COMM_SELF), together = test::build(scene);
+    test::after_steps(*alone.simulation, 120);
+    test::after_steps(*together.simulation, 120);
+    if (rank_of(PETSC_COMM_WORLD) == 0) write(*alone.simulation, scratch / "by_one.h5");
+    write(*together.simulation, scratch / "by_all.h5");
+    const auto uninterrupted = test::after_steps(*alone.simulation, 100);
+    for (const auto& positions : {go_on(scene, PETSC_COMM_WORLD, scratch / "by_one.h5"),
+                                  go_on(scene, PETSC_COMM_SELF, scratch / "by_all.h5")})
+      largest = std::max(largest, test::largest_difference(positions, uninterrupted) / 0.4);
+  }
+  EXPECT_LE(largest, 1e-9);
+  test::verify("plastic bodies, 100 steps after a restart on other ranks and without it, over their size",
+               "the same", largest, "<= 1e-9");
 }
 
 /// A block that is held at one end and thrown away from there.

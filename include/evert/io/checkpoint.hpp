@@ -28,7 +28,7 @@ class CheckpointWriter {
   CheckpointWriter(const DistributedMesh& mesh, std::string path, std::string fingerprint);
 
   /// The scalars are the same on all ranks.
-  void write(const NodeState& nodes, const FlowState& flow, std::span<const StateScalar> scalars) const;
+  void write(const NodeState& nodes, std::span<const StateScalar> scalars, const FlowState& flow = {}) const;
 
  private:
   void write_file(const std::string& path, const NodeState& nodes, const FlowState& flow,
