@@ -40,7 +40,8 @@ const std::vector<Mistake> mistakes{
      "initial_angular_velocity"},
     {"merge_key", "density: 1000", "<<: {density: 1000}",
      "scene.yaml:13: bodies.torus.<<: unknown key; known here are mesh, order, transform, "
-     "density, velocity, spin, start, material, damping, fibres, activation, precision or groups"},
+     "density, velocity, spin, start, material, damping, fibres, activation, plasticity, mean_dilatation, "
+     "precision or groups"},
     // duplicate keys
     {"duplicate_key", "density: 1000", "density: 1000\n    density: 1000",
      "scene.yaml:14: duplicate key 'density', first given at scene.yaml:13"},
@@ -136,12 +137,12 @@ const std::vector<Mistake> mistakes{
     {"unknown_generator", "generate: torus", "generate: tours",
      "scene.yaml:11: bodies.torus.mesh.generate: 'tours' is not allowed: must be box, ball, rounded_box, "
      "ellipsoid, capsule, cylinder, torus, cone, gear, figure, mesh, union, intersection, difference, "
-     "wedge_stack, "
+     "round_bar, wedge_stack, "
      "cut_cube or sliver_ball (did "
      "you mean 'torus'?)"},
     {"unknown_field", "fields: [velocity, rank]", "fields: [velocity, ranks]",
-     "scene.yaml:7: output.fields[1]: 'ranks' is not allowed: must be velocity, min_stretch, inversion or "
-     "rank (did you "
+     "scene.yaml:7: output.fields[1]: 'ranks' is not allowed: must be velocity, min_stretch, inversion, "
+     "rank, plastic_strain or plastic_volume (did you "
      "mean 'rank'?)"},
     {"list_for_word", "model: neo_hookean", "model: [neo_hookean]",
      "scene.yaml:18: bodies.torus.material.model: must be neo_hookean, rotated_linear, "
