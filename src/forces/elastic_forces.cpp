@@ -102,8 +102,12 @@ ElasticForces::ElasticForces(const DistributedMesh& mesh, std::span<const Elasti
 }
 
 /// Of two bounds of λmax(M⁻¹K) the smaller: that of lumped masses times the ratio of these, and the largest
-/// eigenvalue of any cell by itself. docs/design/time-stepping.md
+/// eigenvalue of any cell by itself, as long as its shape does not flow. docs/design/time-stepping.md
 void ElasticForces::bound_consistent_step() {
+  if (may_flow()) {
+    step_over_lumped_ = 1 / std::sqrt(lumped_over_consistent_);
+    return;
+  }
   const double of_cells = consistent_over_block_stiffness(mesh_, densities(), blocks_);
   step_over_lumped_ = 1 / std::sqrt(std::min(lumped_over_consistent_, of_cells));
 }
