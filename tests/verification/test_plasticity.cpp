@@ -1,5 +1,8 @@
 // Bodies that flow: on any number of ranks, restarted, with their energy.
+#include "evert/core/collective.hpp"
 #include "evert/io/checkpoint.hpp"
+#include "evert/mesh/generators.hpp"
+#include "evert/mesh/mesh_writer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +10,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <cmath>
+#include <fstream>
 
 namespace evert {
 namespace {
@@ -112,6 +116,45 @@ TEST(PlasticRanks, GoOnFromACheckpointOfOtherRanks) {
   EXPECT_LE(largest, 1e-9);
   test::verify("plastic bodies, 100 steps after a restart on other ranks and without it, over their size",
                "the same", largest, "<= 1e-9");
+}
+
+/// A map, another mesh and a file of deformations that say the same, of a body that is turned and scaled.
+TEST(PlasticGoal, IsTheSameInAllItsForms) {
+  const test::Scratch scratch;
+  const std::string mesh = scratch / "block.msh", flat = scratch / "flat.msh", numbers = scratch / "goal.txt";
+  on_root(PETSC_COMM_WORLD, [&] {
+    auto block = generate_box({2, 2, 2}, {2, 2, 3}, BoxCells::tet6);
+    write_mesh(block, mesh);
+    for (auto& node : block.nodes) node = {node[0] / std::sqrt(0.5), 0.5 * node[1], node[2] / std::sqrt(0.5)};
+    write_mesh(block, flat);
+    std::ofstream file(numbers);
+    file.precision(17);
+    for (GlobalIndex cell = 0; cell < block.cell_count(); ++cell)
+      file << 1 / std::sqrt(0.5) << " 0 0  0 0.5 0  0 0 " << 1 / std::sqrt(0.5) << '\n';
+  });
+  const auto after = [&](const std::string& goal) {
+    const std::string text = R"(
+name: block
+end_time: 1
+bodies:
+  block:
+    mesh: {file: )" + mesh + R"(}
+    transform: {scale: 0.1, rotate: {axis: [0, 0, 1], angle: 90}, translate: [1, 2, 3]}
+    density: 1000
+    velocity: [1, 0, 0]
+    material: {model: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.3}
+    damping: {model: rotated, stiffness_proportional: 1.0e-3}
+    plasticity: {yield_strain: 0.02, goal: {)" +
+                             goal + R"(, strength: 5}}
+)";
+    auto scene = test::build(text);
+    return test::after_steps(*scene.simulation, 40);
+  };
+  // The axis y of the mesh is turned to -x.
+  const auto by_map = after("flatten: 0.5, axis: [1, 0, 0]");
+  EXPECT_LE(test::largest_difference(after("file: " + flat), by_map), 1e-12);
+  EXPECT_LE(test::largest_difference(after("deformations: " + numbers), by_map), 1e-12);
+  EXPECT_GT(test::largest_difference(after("flatten: 0.5, axis: [0, 1, 0]"), by_map), 1e-3);
 }
 
 /// A block that is held at one end and thrown away from there.
