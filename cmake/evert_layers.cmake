@@ -1,6 +1,6 @@
 # The layers, bottom first (docs/design/layers.md): each includes and links only those before it. The order is
 # enforced by cmake/check_layers.cmake for includes and by add_layer for links.
-set(EVERT_LAYERS core math shapes mesh elements materials forces filter contact topology integrators sim io scene bench app)
+set(EVERT_LAYERS core math shapes mesh elements materials forces filter contact topology integrators sim io scene bench trade app)
 
 # add_layer(<name> SOURCES a.cpp ... [LINK layer-or-target ...])
 # One library per layer: evert_<name>, alias evert::<name>, headers in include/evert/<name>.

@@ -94,7 +94,14 @@ RunArguments parse_run_arguments(std::span<const std::string> arguments, const s
 }
 
 std::string restart_command(const RunArguments& run, const std::string& checkpoint) {
-  std::vector<std::string> words{"evert", "run", run.scene, "-restart", checkpoint};
+  auto again = run;
+  again.restart = checkpoint;
+  return run_line(again);
+}
+
+std::string run_line(const RunArguments& run) {
+  std::vector<std::string> words{"evert", "run", run.scene};
+  if (!run.restart.empty()) words.insert(words.end(), {"-restart", run.restart});
   for (const auto& override : run.overrides) words.insert(words.end(), {"-set", override});
   if (!run.output.empty()) words.insert(words.end(), {"-output", run.output});
   if (run.quiet) words.emplace_back("-quiet");
@@ -110,6 +117,8 @@ std::string usage() {
 
   evert run SCENE.yaml       simulate; on 4 ranks: mpirun -n 4 evert run SCENE.yaml
   evert check SCENE.yaml     say what would be built and what it would cost, and run nothing
+  evert trade SCENE.yaml     measure what settings cost and how wrong they are, and which are worth it
+  evert tune SCENE.yaml      find the cheapest setting within an error, or the best within a budget
   evert stability SCENE.yaml say how long a step may be, and which elements make it short
   evert view RUN.h5          make a web page that plays a run
   evert explain [KEY]        say what a key of a scene means, or list all

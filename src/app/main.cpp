@@ -7,6 +7,7 @@
 #include "evert/app/mesh_command.hpp"
 #include "evert/app/run_command.hpp"
 #include "evert/app/stability_command.hpp"
+#include "evert/app/trade_command.hpp"
 #include "evert/app/view_command.hpp"
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
@@ -59,10 +60,14 @@ int dispatch(const std::string& command, const Arguments& arguments) {
   if (command == "run") return evert::run_command(MPI_COMM_WORLD, evert::parse_run_arguments(arguments));
   if (command == "stability")
     return evert::stability_command(MPI_COMM_WORLD, evert::parse_stability_arguments(arguments), std::cout);
+  if (command == "trade")
+    return evert::trade_command(MPI_COMM_WORLD, evert::parse_trade_arguments(arguments, command), std::cout);
+  if (command == "tune")
+    return evert::tune_command(MPI_COMM_WORLD, evert::parse_trade_arguments(arguments, command), std::cout);
   if (command == "bench") return evert::bench_command(MPI_COMM_WORLD, arguments, std::cout);
   if (const auto found = serial.find(command); found != serial.end())
     return on_rank_zero(found->second, arguments);
-  std::vector<std::string> names{"run", "stability", "bench"};
+  std::vector<std::string> names{"run", "stability", "trade", "tune", "bench"};
   for (const auto& [name, function] : serial) names.push_back(name);
   throw evert::UserError("there is no command '" + command + "': must be " + evert::list_of(names) +
                          evert::did_you_mean(command, names));
@@ -89,12 +94,14 @@ int guarded(const std::string& command, const Arguments& arguments) {
 /// complain about.
 Arguments petsc_options(const std::string& command, const Arguments& arguments) {
   const bool runs_steps = command == "bench" && !arguments.empty() && arguments.front() == "step";
-  const bool only_looks = command == "check" || command == "stability";
+  const bool trades = command == "trade" || command == "tune";
+  const bool only_looks = trades || command == "check" || command == "stability";
   if (command != "run" && !only_looks && !runs_steps) return {};
   try {
     // These describe themselves, without PETSc's pages.
     if (only_looks && evert::asks_for_help(arguments)) return {};
     if (command == "stability") return evert::parse_stability_arguments(arguments).run.petsc;
+    if (trades) return evert::parse_trade_arguments(arguments, command).run.petsc;
     return evert::parse_run_arguments(std::span(arguments).subspan(runs_steps ? 1 : 0)).petsc;
   } catch (const evert::UserError&) {
     return {};

@@ -5,6 +5,7 @@
 
 #include "events.hpp"
 #include "overrides.hpp"
+#include "scene_file.hpp"
 #include "statics.hpp"
 #include "tables.hpp"
 #include "yaml.hpp"
@@ -135,11 +136,15 @@ SceneConfig parse_scene(std::string_view text, const std::string& file,
   return scene;
 }
 
-SceneConfig load_scene(MPI_Comm comm, const std::string& path, std::span<const std::string> overrides) {
+std::string read_scene_file(MPI_Comm comm, const std::string& path) {
   std::string text;
   on_root(comm, [&] { text = read_file(path); });
   broadcast(comm, text);
-  return parse_scene(text, path, overrides);
+  return text;
+}
+
+SceneConfig load_scene(MPI_Comm comm, const std::string& path, std::span<const std::string> overrides) {
+  return parse_scene(read_scene_file(comm, path), path, overrides);
 }
 
 }  // namespace evert

@@ -48,6 +48,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> explicit_cases();
 [[nodiscard]] std::vector<Case> stability_cases();
 [[nodiscard]] std::vector<Case> plasticity_cases();
+[[nodiscard]] std::vector<Case> trade_cases();
 
 // --- good input to spoil
 

@@ -526,7 +526,7 @@ const std::vector<Case>& all_cases() {
                               bad_scenes,        bad_meshes,
                               cut_meshes(),      fibre_cases(),
                               failures,          bad_output,
-                              bad_restarts})
+                              bad_restarts,      trade_cases()})
       all.insert(all.end(), group.begin(), group.end());
     return all;
   }();

@@ -26,6 +26,9 @@ struct RunArguments {
 [[nodiscard]] RunArguments parse_run_arguments(std::span<const std::string> arguments,
                                                const std::string& command = "run");
 
+/// The command of this run, as one can paste it into a shell.
+[[nodiscard]] std::string run_line(const RunArguments& run);
+
 /// The command that goes on from a checkpoint of this run, with everything that the run was given, as one can
 /// paste it into a shell.
 [[nodiscard]] std::string restart_command(const RunArguments& run, const std::string& checkpoint);
