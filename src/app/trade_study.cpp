@@ -195,6 +195,7 @@ std::optional<trade::Trial> TradeStudy::run(const trade::Choice& choice, int rep
 
 std::string TradeStudy::command_of(const trade::Choice& choice) const {
   auto run = arguments_.run;
+  run.quiet = false;
   const auto overrides = trade::overrides_of(axes_, choice);
   run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
   return run_line(run);

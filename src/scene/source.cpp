@@ -53,6 +53,10 @@ void move_paths(Value& value, const fs::path& from, const fs::path& to) {
   }
 }
 
+bool is_list_of_maps(const Value& value) {
+  return !value.items.empty() && value.items.front().kind == Value::Kind::map;
+}
+
 /// Maps are written key by key down to the keys of a body, flow style below.
 void write_block(const Value& value, int depth, std::string& out) {
   constexpr int deepest = 3;
@@ -62,8 +66,8 @@ void write_block(const Value& value, int depth, std::string& out) {
     if (entry.kind == Value::Kind::map && depth + 1 < deepest && !entry.entries.empty()) {
       out += '\n';
       write_block(entry, depth + 1, out);
-    } else if (entry.kind == Value::Kind::list && depth == 0 && !entry.items.empty()) {
-      for (const auto& item : entry.items) out += "\n  - " + canonical_text(item);
+    } else if (is_list_of_maps(entry)) {
+      for (const auto& item : entry.items) out += "\n" + indent + "  - " + canonical_text(item);
       out += '\n';
     } else {
       out += " " + canonical_text(entry) + '\n';

@@ -39,9 +39,10 @@ std::vector<std::size_t> pareto_front(std::span<const Trial> trials) {
     return trials[a].errors.displacement < trials[b].errors.displacement;
   });
   std::vector<std::size_t> front;
+  constexpr double noticeable = 0.99;
   double least = std::numeric_limits<double>::infinity();
   for (const auto i : order) {
-    if (trials[i].errors.displacement >= least) continue;
+    if (!(trials[i].errors.displacement < noticeable * least)) continue;
     least = trials[i].errors.displacement;
     front.push_back(i);
   }

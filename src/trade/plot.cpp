@@ -143,6 +143,12 @@ std::string key_line(double y) {
          text_at(left + 310, y, "did not finish: unstable, too slow", "");
 }
 
+/// Of letters half as wide as they are high, on one line.
+double fitting_size(const std::string& words) {
+  constexpr double usual = 16, letter = 0.55;
+  return std::min(usual, (width - left - right) / (letter * static_cast<double>(words.size())));
+}
+
 }  // namespace
 
 std::string plot_of(const std::string& title, std::span<const Trial> trials,
@@ -164,10 +170,10 @@ std::string plot_of(const std::string& title, std::span<const Trial> trials,
   out += front_line(page, trials, front) + marks(page, trials, front) + key_line(bottom + 12);
   for (std::size_t f = 0; f < front.size(); ++f) {
     const auto& trial = trials[front[f]];
-    out += text_at(left, bottom + 12 + row * (static_cast<double>(f) + 1),
-                   formatted("%zu  %s: %s, %.3g s/s", f + 1, trial.label.c_str(),
-                             percent(trial.errors.displacement).c_str(), trial.cost),
-                   "");
+    const auto words = formatted("%zu  %s: %s, %.3g s/s", f + 1, trial.label.c_str(),
+                                 percent(trial.errors.displacement).c_str(), trial.cost);
+    out += text_at(left, bottom + 18 + row * (static_cast<double>(f) + 1), words,
+                   formatted("font-size=\"%.1f\"", fitting_size(words)).c_str());
   }
   return out + "</svg>\n";
 }

@@ -25,7 +25,7 @@ struct Trial {
 };
 
 /// Indices of the usable trials that no other beats in both cost and error of the displacement, the cheapest
-/// first. Of trials that are equal in both the first.
+/// first. Less than a hundredth of the error is no gain: who is dearer for that is left out.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Trial> trials);
 
 /// All trials by cost, the front marked, as a table for people.
