@@ -27,20 +27,20 @@ std::string goal_text(const trade::TuningGoal& goal) {
                     : formatted("a budget of %.3g CPU s per s", *goal.budget);
 }
 
-/// Against the best values of all axes: the cost that each choice takes off, and the error that it adds.
+/// Against the best values of all axes: what each choice does by itself.
 std::string effects_text(const TradeStudy& study, const trade::TradeModel& model,
                          const trade::Choice& choice) {
-  std::string text;
-  std::string best_key;
+  const auto base = model.predict(model.base());
+  std::string text, best_key;
   double best_gain = 1;
   for (std::size_t a = 0; a < study.axes().size(); ++a) {
     const auto& axis = study.axes()[a];
-    const auto effect = model.effect(a, choice[a]);
-    if (!effect || choice[a] == axis.best) continue;
-    const double gain = 1 / effect->cost;
-    text += formatted("  %s %s instead of %s: %.2g times the speed, an error of %s\n", axis.key.c_str(),
-                      axis.values[choice[a]].c_str(), axis.values[axis.best].c_str(), gain,
-                      trade::percent(effect->error).c_str());
+    const auto alone = model.predict(model.varied(a, choice[a]));
+    if (!base || !alone || choice[a] == axis.best) continue;
+    const double gain = base->cost / alone->cost;
+    text += formatted("  %s %s instead of %s: %.2g times the speed, an error of %s instead of %s\n",
+                      axis.key.c_str(), axis.values[choice[a]].c_str(), axis.values[axis.best].c_str(), gain,
+                      trade::percent(alone->error).c_str(), trade::percent(base->error).c_str());
     if (gain > best_gain) {
       best_gain = gain;
       best_key = axis.key;

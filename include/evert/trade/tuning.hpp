@@ -43,11 +43,11 @@ class TradeModel {
   [[nodiscard]] Choice base() const;
   /// The base with one axis at another value.
   [[nodiscard]] Choice varied(std::size_t axis, std::size_t value) const;
-  /// Error that one value of an axis makes, and what it multiplies the cost of the base by. Empty: unknown.
-  [[nodiscard]] std::optional<Prediction> effect(std::size_t axis, std::size_t value) const;
 
  private:
   [[nodiscard]] const Trial* find(const Choice& choice) const;
+  /// Error that one value of an axis makes, and what it multiplies the cost of the base by. Empty: unknown.
+  [[nodiscard]] std::optional<Prediction> effect(std::size_t axis, std::size_t value) const;
   [[nodiscard]] std::optional<Prediction> measured_effect(std::size_t axis, std::size_t value) const;
   [[nodiscard]] std::optional<Prediction> separable(const Choice& choice) const;
   [[nodiscard]] bool should_fail(const Choice& choice) const;
