@@ -167,6 +167,11 @@ std::optional<RunRecord> TradeRuns::run(const trade::Overrides& overrides, int r
     return refused;
   }
   auto record = found(identity);
+  // More patience than then makes it worth another try.
+  constexpr double more = 1.1;
+  if (record && record->fate == Fate::too_slow &&
+      more * record->cpu_seconds.front() < limit_ * size_of(comm_))
+    record.reset();
   const auto wants_more = [&] {
     return !record || (record->fate == Fate::finished &&
                        record->cpu_seconds.size() < static_cast<std::size_t>(repetitions));

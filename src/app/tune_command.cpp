@@ -96,6 +96,8 @@ int tune_command(MPI_Comm comm, const TradeArguments& arguments, std::ostream& o
   catch_signals();
   TradeStudy study(comm, arguments, out);
   if (!study.make_reference()) return interrupted_trade(comm, study);
+  if (arguments.goal.error && study.quality().most > *arguments.goal.error)
+    study.say("note: the finest run itself may be wrong by more than the error that is asked for\n");
   trade::TradeModel model(study.axes());
   if (!search(study, model, arguments.goal)) return interrupted_trade(comm, study);
   const auto goal = goal_text(arguments.goal);

@@ -194,6 +194,26 @@ std::optional<Choice> next_of_axis(const TradeModel& model, const Axis& axis, st
   return std::nullopt;
 }
 
+/// Guesses miss what axes do together: a neighbour of the best that should be worse by a half may be better.
+std::optional<Choice> near_best(const TradeModel& model, std::span<const Axis> axes, const Trial& best,
+                                const TuningGoal& goal) {
+  constexpr double doubt = 1.5;
+  double to_beat = doubt * goal.objective(best.errors.displacement, best.cost);
+  std::optional<Choice> next;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    for (std::size_t value = 0; value < axes[a].size(); ++value) {
+      auto choice = best.choice;
+      choice[a] = value;
+      const auto guess = model.knows(choice) ? std::nullopt : model.predict(choice);
+      if (!guess || !goal.is_met(guess->error / doubt, guess->cost / doubt)) continue;
+      const double objective = goal.objective(guess->error, guess->cost);
+      if (objective >= to_beat) continue;
+      to_beat = objective;
+      next = choice;
+    }
+  return next;
+}
+
 }  // namespace
 
 std::optional<Choice> next_trial(const TradeModel& model, std::span<const Axis> axes,
@@ -222,7 +242,8 @@ std::optional<Choice> next_trial(const TradeModel& model, std::span<const Axis> 
       nearest = choice;
     }
   }
-  return next || best != nullptr ? next : nearest;
+  if (next) return next;
+  return best != nullptr ? near_best(model, axes, *best, goal) : nearest;
 }
 
 double parse_share(const std::string& option, const std::string& text) {

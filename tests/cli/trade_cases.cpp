@@ -108,6 +108,13 @@ const std::vector<Case> cases{
      .exit_code = 0,
      .says = {"time_step 0.4", "unstable"},
      .ranks = {1}},
+    {.name = "trade_shows_what_cannot_be",
+     .command =
+         "trade scene.yaml -vary filter.time_step=1e-3 -vary integrator.time_step=5e-4,2e-3 -quiet -out t",
+     .files = {scene()},
+     .exit_code = 0,
+     .says = {"time_step 2e-3", "refused: "},
+     .ranks = {1, 2}},
     {.name = "trade_stops_what_is_slow",
      .command = "trade scene.yaml -vary integrator.time_step=1e-3 -limit 0 -out t",
      .files = {scene()},

@@ -57,7 +57,7 @@ class TradeModel {
 };
 
 /// The next setting to run: first the base and each axis by itself, then what promises to meet the goal
-/// better than all so far. Empty: none does.
+/// better than all so far, then neighbours of the best that might, for all that is known. Empty: none does.
 [[nodiscard]] std::optional<Choice> next_trial(const TradeModel& model, std::span<const Axis> axes,
                                                std::span<const Choice> grid, const TuningGoal& goal);
 
