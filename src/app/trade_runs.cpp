@@ -94,6 +94,13 @@ class TradeObserver final : public Observer {
   bool too_slow_ = false;
 };
 
+RunRecord refused(const UserError& error) {
+  RunRecord record;
+  record.fate = Fate::refused;
+  record.message = error.what();
+  return record;
+}
+
 std::string text_of(const trade::SamplePlan& plan) {
   std::string text = formatted("%.17g %d %d", plan.end_time, plan.fields, plan.probe_times);
   const auto add = [&](const trade::BodyPoint& p) {
@@ -135,25 +142,25 @@ std::string TradeRuns::identity_of(const trade::Overrides& overrides) const {
          formatted(" on %d ranks\n", size_of(comm_)) + plan_text_;
 }
 
-/// Collective. All but what was measured goes to all ranks.
+/// Collective. What decides about further runs goes to all ranks.
 std::optional<RunRecord> TradeRuns::found(const std::string& identity) const {
   std::optional<RunRecord> record;
   if (rank_of(comm_) == 0) record = store_.find(identity);
-  std::array<double, 6> numbers{};
-  if (record)
-    numbers = {1,
-               static_cast<double>(record->fate),
-               static_cast<double>(record->cpu_seconds.size()),
-               record->reached,
-               record->cost() * record->reached,
-               0};
-  MPI_Bcast(numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, 0, comm_);
-  if (numbers[0] == 0 || record) return record;
-  RunRecord of_root;
-  of_root.fate = static_cast<Fate>(static_cast<int>(numbers[1]));
-  of_root.cpu_seconds.assign(static_cast<std::size_t>(numbers[2]), numbers[4]);
-  of_root.reached = numbers[3];
-  return of_root;
+  std::array<std::int64_t, 3> counts{};  // found, fate, repetitions
+  std::array<double, 2> seconds{};       // simulated, least of the processor
+  if (record) {
+    counts = {1, static_cast<std::int64_t>(record->fate),
+              static_cast<std::int64_t>(record->cpu_seconds.size())};
+    seconds = {record->reached, record->cost() * record->reached};
+  }
+  MPI_Bcast(counts.data(), 3, MPI_INT64_T, 0, comm_);
+  MPI_Bcast(seconds.data(), 2, MPI_DOUBLE, 0, comm_);
+  if (counts[0] == 0 || record) return record;
+  RunRecord elsewhere;
+  elsewhere.fate = static_cast<Fate>(counts[1]);
+  elsewhere.cpu_seconds.assign(static_cast<std::size_t>(counts[2]), seconds[1]);
+  elsewhere.reached = seconds[0];
+  return elsewhere;
 }
 
 std::optional<RunRecord> TradeRuns::run(const trade::Overrides& overrides, int repetitions) {
@@ -161,10 +168,7 @@ std::optional<RunRecord> TradeRuns::run(const trade::Overrides& overrides, int r
   try {
     identity = identity_of(overrides);
   } catch (const UserError& error) {
-    RunRecord refused;
-    refused.fate = Fate::refused;
-    refused.message = error.what();
-    return refused;
+    return refused(error);
   }
   auto record = found(identity);
   // More patience than then makes it worth another try.
@@ -172,9 +176,9 @@ std::optional<RunRecord> TradeRuns::run(const trade::Overrides& overrides, int r
   if (record && record->fate == Fate::too_slow &&
       more * record->cpu_seconds.front() < limit_ * size_of(comm_))
     record.reset();
+  const auto wanted = static_cast<std::size_t>(repetitions);
   const auto wants_more = [&] {
-    return !record || (record->fate == Fate::finished &&
-                       record->cpu_seconds.size() < static_cast<std::size_t>(repetitions));
+    return !record || (record->fate == Fate::finished && record->cpu_seconds.size() < wanted);
   };
   while (wants_more()) {
     auto once = simulate(overrides);
@@ -197,10 +201,7 @@ std::optional<RunRecord> TradeRuns::simulate(const trade::Overrides& overrides) 
   try {
     built = build_scene(comm_, scene);
   } catch (const UserError& error) {
-    RunRecord refused;
-    refused.fate = Fate::refused;
-    refused.message = error.what();
-    return refused;
+    return refused(error);
   }
   reject_unused_options(comm_, allow_unknown_options_, solvers_of(*built.simulation));
   return run_built(built, heap_before);
