@@ -65,7 +65,8 @@ std::string table_of(std::span<const Trial> trials, std::span<const std::size_t>
     out += formatted("%5s  %-*s  %8.3g", place > 0 ? std::to_string(place).c_str() : "", w,
                      trial.label.c_str(), trial.cost);
     if (!trial.usable()) {
-      out += formatted("  %s: %s\n", name_of(trial.fate), trial.message.c_str());
+      out +=
+          formatted("  %s: ", name_of(trial.fate)) + trial.message.substr(0, trial.message.find(';')) + "\n";
       continue;
     }
     const auto& e = trial.errors;

@@ -122,21 +122,28 @@ std::optional<Prediction> TradeModel::separable(const Choice& choice) const {
   return Prediction{std::sqrt(square), cost};
 }
 
+double TradeModel::quickness(const Choice& choice) const {
+  double quick = 1;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const double number = axes_[a].numbers[choice[a]];
+    if (std::isnan(number)) continue;
+    if (axes_[a].kind == AxisKind::step) quick *= number;
+    if (axes_[a].kind == AxisKind::length) quick /= number;
+    if (axes_[a].kind == AxisKind::count) quick *= std::cbrt(number);
+  }
+  return quick;
+}
+
 bool TradeModel::should_fail(const Choice& choice) const {
-  return std::ranges::any_of(trials_, [&](const Trial& trial) {
-    if (trial.usable()) return false;
-    for (std::size_t a = 0; a < axes_.size(); ++a) {
-      if (choice[a] == trial.choice[a]) continue;
-      const auto& axis = axes_[a];
-      // Shorter steps and coarser meshes are more stable.
-      const bool worse = axis.kind == AxisKind::step ? axis.is_coarser(choice[a], trial.choice[a])
-                         : axis.kind == AxisKind::length || axis.kind == AxisKind::count
-                             ? axis.is_coarser(trial.choice[a], choice[a])
-                             : axis.kind == AxisKind::tolerance;
-      if (!worse) return false;
-    }
-    return true;
-  });
+  double held = 0, failed = std::numeric_limits<double>::infinity();
+  for (const auto& trial : trials_)
+    if (trial.usable())
+      held = std::max(held, quickness(trial.choice));
+    else if (trial.fate == Fate::unstable)
+      failed = std::min(failed, quickness(trial.choice));
+  if (std::isinf(failed)) return false;
+  // Between the two lies the limit: two thirds of the way, in logarithms, are worth a try.
+  return !(quickness(choice) < std::max(held, std::cbrt(held * failed * failed)) * (1 + tiny));
 }
 
 std::optional<Prediction> TradeModel::predict(const Choice& choice) const {
@@ -194,11 +201,20 @@ std::optional<Choice> next_of_axis(const TradeModel& model, const Axis& axis, st
   return std::nullopt;
 }
 
-/// Guesses miss what axes do together: a neighbour of the best that should be worse by a half may be better.
+/// What is to be small, larger the more the goal is missed: a guess that misses it a little may be wrong.
+double promise(const Prediction& guess, const TuningGoal& goal) {
+  constexpr double severity = 3;
+  const double miss = goal.error ? guess.error / *goal.error : guess.cost / *goal.budget;
+  return goal.objective(guess.error, guess.cost) * std::pow(std::max(1.0, miss), severity);
+}
+
+/// Guesses miss what axes do together: a neighbour of the best that should be worse by a half may be better,
+/// and another word by more.
 std::optional<Choice> near_best(const TradeModel& model, std::span<const Axis> axes, const Trial& best,
                                 const TuningGoal& goal) {
-  constexpr double doubt = 1.5;
-  double to_beat = doubt * goal.objective(best.errors.displacement, best.cost);
+  constexpr double doubt = 1.5, doubt_of_words = 3;
+  const double now = goal.objective(best.errors.displacement, best.cost);
+  double least = std::numeric_limits<double>::infinity();
   std::optional<Choice> next;
   for (std::size_t a = 0; a < axes.size(); ++a)
     for (std::size_t value = 0; value < axes[a].size(); ++value) {
@@ -207,8 +223,9 @@ std::optional<Choice> near_best(const TradeModel& model, std::span<const Axis> a
       const auto guess = model.knows(choice) ? std::nullopt : model.predict(choice);
       if (!guess || !goal.is_met(guess->error / doubt, guess->cost / doubt)) continue;
       const double objective = goal.objective(guess->error, guess->cost);
-      if (objective >= to_beat) continue;
-      to_beat = objective;
+      const double most = now * (axes[a].kind == AxisKind::choice ? doubt_of_words : doubt);
+      if (objective >= std::min(most, least)) continue;
+      least = objective;
       next = choice;
     }
   return next;
@@ -225,25 +242,14 @@ std::optional<Choice> next_trial(const TradeModel& model, std::span<const Axis> 
   constexpr double worth_a_run = 0.95;
   double to_beat = std::numeric_limits<double>::infinity();
   if (best != nullptr) to_beat = worth_a_run * goal.objective(best->errors.displacement, best->cost);
-  std::optional<Choice> next, nearest;
-  double least_miss = std::numeric_limits<double>::infinity();
+  std::optional<Choice> next;
   for (const auto& choice : grid) {
-    if (model.knows(choice)) continue;
-    const auto guess = model.predict(choice);
-    if (!guess) continue;
-    const double objective = goal.objective(guess->error, guess->cost);
-    if (goal.is_met(guess->error, guess->cost) && objective < to_beat) {
-      to_beat = objective;
-      next = choice;
-    }
-    const double miss = goal.error ? guess->error : guess->cost;
-    if (miss < least_miss) {
-      least_miss = miss;
-      nearest = choice;
-    }
+    const auto guess = model.knows(choice) ? std::nullopt : model.predict(choice);
+    if (!guess || promise(*guess, goal) >= to_beat) continue;
+    to_beat = promise(*guess, goal);
+    next = choice;
   }
-  if (next) return next;
-  return best != nullptr ? near_best(model, axes, *best, goal) : nearest;
+  return next || best == nullptr ? next : near_best(model, axes, *best, goal);
 }
 
 double parse_share(const std::string& option, const std::string& text) {

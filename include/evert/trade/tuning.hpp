@@ -36,7 +36,7 @@ class TradeModel {
 
   void add(const Trial& trial);
   [[nodiscard]] bool knows(const Choice& choice) const;
-  /// Empty: nothing can be said yet, or it should be unstable, since a finer one with no longer step was.
+  /// Empty: nothing can be said yet, or it should be unstable, as others with such steps for such edges were.
   [[nodiscard]] std::optional<Prediction> predict(const Choice& choice) const;
   [[nodiscard]] const std::vector<Trial>& trials() const { return trials_; }
   /// The best values of all axes.
@@ -50,6 +50,8 @@ class TradeModel {
   [[nodiscard]] std::optional<Prediction> effect(std::size_t axis, std::size_t value) const;
   [[nodiscard]] std::optional<Prediction> measured_effect(std::size_t axis, std::size_t value) const;
   [[nodiscard]] std::optional<Prediction> separable(const Choice& choice) const;
+  /// Steps over lengths of edges: what stability limits, in some unit.
+  [[nodiscard]] double quickness(const Choice& choice) const;
   [[nodiscard]] bool should_fail(const Choice& choice) const;
 
   std::vector<Axis> axes_;

@@ -89,9 +89,11 @@ TEST(Tuning, SaysWhenNothingIsGoodEnough) {
 TEST(Tuning, DoesNotTryWhatMustExplode) {
   TradeModel model(axes);
   model.add(scene({0, 0, 0}));
+  model.add(scene({1, 0, 0}));
   model.add(scene({3, 0, 0}));
   ASSERT_FALSE(model.trials().back().usable());
   EXPECT_FALSE(model.predict({3, 0, 2}));
+  EXPECT_FALSE(model.predict({3, 1, 0})) << "hardly any coarser";
   EXPECT_TRUE(model.predict({3, 2, 0})) << "a coarser mesh allows a longer step";
   EXPECT_TRUE(model.predict({2, 0, 0}));
 }
