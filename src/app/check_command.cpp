@@ -1,34 +1,21 @@
 #include "evert/app/check_command.hpp"
 
 #include "evert/app/command_line.hpp"
-#include "evert/app/observer.hpp"
 #include "evert/core/formatted.hpp"
-#include "evert/core/petsc.hpp"
 #include "evert/scene/build.hpp"
 #include "evert/scene/load.hpp"
 #include "evert/scene/material.hpp"
 #include "evert/scene/petsc_options.hpp"
 
-#include <petscsys.h>
-
+#include "cost_report.hpp"
 #include "filter_report.hpp"
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <ctime>
+#include "report.hpp"
 #include <numeric>
 
 namespace evert {
 namespace {
 
 std::string vector_text(const Vec3d& v) { return formatted("(%g, %g, %g)", v[0], v[1], v[2]); }
-
-std::string duration_text(double seconds) {
-  if (seconds < 120) return formatted("%.2g s", seconds);
-  if (seconds < 7200) return formatted("%.0f min", seconds / 60);
-  return formatted("%.3g h", seconds / 3600);
-}
 
 std::string material_text(const MaterialConfig& material) {
   auto model = name_of(material.model);
@@ -42,7 +29,7 @@ std::string material_text(const MaterialConfig& material) {
 std::string plasticity_text(const PlasticityConfig& plasticity) {
   auto text = plasticity.yield_stress ? formatted("yields at %g Pa", *plasticity.yield_stress)
                                       : formatted("yields at a log strain of %g", *plasticity.yield_strain);
-  if (!plasticity.isochoric) text += ", volume and all";
+  if (!plasticity.isochoric) text += ", of the volume too";
   if (plasticity.goal) text += ", led to a goal";
   return text;
 }
@@ -85,21 +72,6 @@ std::string damping_text(const std::optional<DampingConfig>& damping) {
   if (parts.empty()) return "undamped";
   return parts.size() == 1 ? parts[0] : parts[0] + ", " + parts[1];
 }
-
-/// Writes "title   text", the title only when it differs from the line before.
-class Report {
- public:
-  explicit Report(std::ostream& out) : out_(out) {}
-
-  void line(const std::string& title, const std::string& text) {
-    out_ << formatted("%-13s", title == last_ ? "" : title.c_str()) << text << '\n';
-    last_ = title;
-  }
-
- private:
-  std::ostream& out_;
-  std::string last_;
-};
 
 void report_bodies(Report& report, const SceneConfig& scene, const BuiltScene& built) {
   const auto& mesh = built.simulation->mesh();
@@ -164,122 +136,6 @@ void report_surroundings(Report& report, const SceneConfig& scene, const Simulat
                                                                     : formatted("%g", event.value)));
 }
 
-/// Processor seconds of one step (wall time would measure what else the machine does). The first step of a
-/// motion also sets the solvers up; of states of rest it is the one with the most to do.
-double seconds_a_step(Simulation& simulation, double dt) {
-  if (!simulation.quasistatic()) simulation.step(dt);
-  const auto begin = std::clock();
-  simulation.step(dt);
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
-
-/// Gives the regions of an event's body what the scene says now. Regions are called "body" or "body.group".
-void set_regions(Simulation& simulation, const BodyConfig& body) {
-  const auto& regions = simulation.mesh().regions;
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    int group = -1;
-    for (std::size_t g = 0; g < body.groups.size(); ++g)
-      if (regions[r] == body.name + "." + body.groups[g].name) group = static_cast<int>(g);
-    if (group >= 0 || regions[r] == body.name)
-      simulation.set_properties(static_cast<std::int32_t>(r), properties_of(body, group));
-  }
-}
-
-/// The step between two events; an automatic one as the initial state suggests it.
-struct Stretch {
-  double begin = 0;
-  double dt = 0;
-};
-
-std::vector<Stretch> time_steps(Simulation& simulation, SceneConfig scene) {
-  std::vector<Stretch> out{{0, std::min(simulation.suggested_time_step(), scene.end_time)}};
-  for (const auto& event : scene.events) {
-    if (event.at >= scene.end_time) continue;
-    apply_event(scene, event);
-    if (event.target == EventTarget::material || event.target == EventTarget::damping)
-      set_regions(simulation, scene.bodies[event.owner]);
-    out.push_back({event.at, std::min(simulation.suggested_time_step(), scene.end_time)});
-  }
-  const auto cut = [&](const std::optional<ActivationConfig>& keys) {
-    for (const auto& key : keys.value_or(ActivationConfig{})) {
-      if (!(key.time > 0 && key.time < scene.end_time)) continue;
-      const auto later = std::ranges::upper_bound(out, key.time, {}, &Stretch::begin);
-      out.insert(later, {key.time, (later - 1)->dt});
-    }
-  };
-  for (const auto& body : scene.bodies) {
-    cut(body.activation);
-    for (const auto& group : body.groups) cut(group.activation);
-  }
-  return out;
-}
-
-/// Times that the run hits exactly, besides those of events.
-std::vector<Schedule> stops_of(const SceneConfig& scene) {
-  std::vector<Schedule> stops;
-  if (const auto rate = scene.output.frames_per_second) stops.emplace_back(1 / *rate);
-  if (const auto interval = scene.output.energy_log; interval.value_or(0) > 0) stops.emplace_back(*interval);
-  if (scene.checkpoint && scene.checkpoint->every_simulated)
-    stops.emplace_back(*scene.checkpoint->every_simulated);
-  return stops;
-}
-
-/// Steps of at most `dt` from `begin` to `end`, as run_loop makes them: equal ones from stop to stop. Walks
-/// over some stops and takes the rest to be like them.
-double steps_between(double begin, double end, double dt, std::span<const Schedule> stops) {
-  constexpr int most_stops = 100'000;
-  double steps = 0;
-  double time = begin;
-  for (int i = 0; i < most_stops && time < end; ++i) {
-    double stop = end;
-    for (const auto& schedule : stops) stop = std::min(stop, schedule.next_after(time));
-    steps += std::max(1.0, std::ceil((stop - time) / dt - 1e-9));
-    time = stop;
-  }
-  return steps * (end - begin) / (time - begin);
-}
-
-void report_cost(Report& report, const SceneConfig& scene, Simulation& simulation) {
-  const auto stretches = time_steps(simulation, scene);
-  const auto stops = stops_of(scene);
-  const bool fixed = scene.integrator.time_step.has_value();
-  double steps = 0;
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    const double end = i + 1 < stretches.size() ? stretches[i + 1].begin : scene.end_time;
-    if (end > stretches[i].begin) steps += steps_between(stretches[i].begin, end, stretches[i].dt, stops);
-    if (i > 0 && stretches[i].dt == stretches[i - 1].dt) continue;
-    report.line("time step", formatted("%.4g s from t = %g s", stretches[i].dt, stretches[i].begin) +
-                                 (fixed ? ", fixed"
-                                  : scene.integrator.method == IntegrationMethod::quasistatic
-                                      ? ", one load step from stop to stop"
-                                      : ", automatic, as the initial state suggests"));
-  }
-  report.line("steps", formatted("%s %.6g to the end time, %g s: these, cut to hit frames, log rows, "
-                                 "checkpoints and events exactly",
-                                 fixed ? "about" : "at least", steps, scene.end_time));
-  if (scene.integrator.method == IntegrationMethod::quasistatic)
-    report.line("steps", "each in parts where it does not converge at once (integrator.load_steps)");
-  else if (!fixed)
-    report.line("steps", "more where elements stiffen or deform quickly (integrator.max_strain_increment)");
-  if (const auto rate = scene.output.frames_per_second)
-    report.line("frames", formatted("%.0f to ", std::floor(scene.end_time * *rate * (1 + 1e-12)) + 1) +
-                              scene.output.directory);
-  else
-    report.line("frames", "none: output.frames_per_second is not given");
-  const double step_seconds = seconds_a_step(simulation, stretches.back().dt);
-  PetscLogDouble resident = 0;
-  check(PetscMemoryGetCurrentUsage(&resident));
-  constexpr double mega = 1e6;
-  const auto elements = static_cast<double>(simulation.elastic().memory());
-  double cells = 0;
-  for (const auto& of_region : simulation.mesh().cells) cells += static_cast<double>(of_region.size());
-  report.line("memory", formatted("%.1f MB, of which element data %.1f MB, %.0f bytes a cell",
-                                  resident / mega, elements / mega, elements / cells));
-  report.line("cost", formatted("%.2g s a step at the start, on one rank: ", step_seconds) +
-                          duration_text(steps * step_seconds) +
-                          " for these steps; output and harder damping solves come on top");
-}
-
 }  // namespace
 
 int check_command(std::span<const std::string> arguments, std::ostream& out) {
@@ -300,6 +156,7 @@ int check_command(std::span<const std::string> arguments, std::ostream& out) {
     for (const auto& line : filter_lines(PETSC_COMM_SELF, *filter)) report.line("filter", line);
   report_surroundings(report, scene, *built.simulation);
   report_cost(report, scene, *built.simulation);
+  report_features(report, scene, run.scene, run.overrides);
   reject_unused_options(PETSC_COMM_SELF, run.allow_unknown_options, solvers_of(*built.simulation));
   report.line("valid", "nothing wrong was found");
   return 0;

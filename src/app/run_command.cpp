@@ -172,6 +172,7 @@ std::string time_text(const RunSummary& summary) {
       {spent({Phase::damping_apply, Phase::damping_solve}), "damping"},
       {spent({Phase::assembly, Phase::static_solve}), "static solves"},
       {contact, "contact"},
+      {spent({Phase::filter}), "filter"},
       {spent({Phase::vector_update}), "positions and velocities"},
       {spent({Phase::halo}), "messages"},
       {spent({Phase::io}), "output"}};

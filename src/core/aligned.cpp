@@ -1,6 +1,10 @@
 #include "evert/core/aligned.hpp"
 
+#include "evert/core/memory_in_use.hpp"
+
+#include <atomic>
 #include <cstdint>
+#include <malloc.h>
 #include <new>
 #include <sys/mman.h>
 
@@ -11,6 +15,8 @@ constexpr std::align_val_t cache_line{64};
 constexpr std::size_t huge_page = std::size_t{1} << 21;
 /// Arrays half as large as a huge page get a whole one: what that wastes is less than what misses cost.
 constexpr std::size_t worth_a_huge_page = huge_page / 2;
+
+std::atomic<std::size_t> mapped_bytes = 0;
 
 std::size_t whole_pages(std::size_t bytes) { return (bytes + huge_page - 1) / huge_page * huge_page; }
 
@@ -26,6 +32,7 @@ void* map_huge_pages(std::size_t bytes) {
   if (before > 0) static_cast<void>(munmap(begin, before));
   static_cast<void>(munmap(array + size, huge_page - before));
   static_cast<void>(madvise(array, size, MADV_HUGEPAGE));  // a wish: refused, the array is slower, no more
+  mapped_bytes += size;
   return array;
 }
 
@@ -40,7 +47,13 @@ void free_aligned(void* memory, std::size_t bytes) noexcept {
     ::operator delete(memory, cache_line);
   } else {
     static_cast<void>(munmap(memory, whole_pages(bytes)));
+    mapped_bytes -= whole_pages(bytes);
   }
+}
+
+std::size_t memory_in_use() {
+  const auto heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd + mapped_bytes;
 }
 
 }  // namespace evert

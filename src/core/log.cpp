@@ -6,9 +6,8 @@ namespace evert {
 namespace {
 
 constexpr std::array<std::string_view, phase_count> phase_names{
-    "setup",    "force",        "stretch_svd", "damping_apply", "damping_solve",
-    "assembly", "static_solve", "contact",     "vector_update", "halo",
-    "io"};
+    "setup",        "force",   "stretch_svd", "damping_apply", "damping_solve", "assembly",
+    "static_solve", "contact", "filter",      "vector_update", "halo",          "io"};
 
 constexpr auto no_phase = static_cast<Phase>(phase_count);
 

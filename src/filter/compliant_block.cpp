@@ -3,6 +3,7 @@
 #include "evert/core/error.hpp"
 #include "evert/filter/stiff_modes.hpp"
 #include "evert/forces/kernels/tangent_bound.hpp"
+#include "evert/forces/plastic_cells.hpp"
 #include "evert/math/eigen_symmetric3.hpp"
 #include "evert/math/nodal.hpp"
 #include "evert/math/svd3.hpp"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace evert {
@@ -25,21 +27,34 @@ struct Cell {
   double middle = 0;         ///< V Γ₂ against them [m/kg]
 };
 
-class CompliantBlock final : public ElasticBlock {
+class ImplicitStiffnessBlock final : public CompliantBlock {
  public:
-  CompliantBlock(std::unique_ptr<ElasticBlock> forces, const ElasticCells& cells,
-                 std::span<const Vec3d> rest_positions, std::span<const CellClamp> clamps)
-      : forces_(std::move(forces)), cells_(clamps.size()), own_masses_(4 * clamps.size()) {
+  ImplicitStiffnessBlock(std::unique_ptr<ElasticBlock> forces, const ElasticCells& cells,
+                         std::span<const TetShape> shapes, std::span<const CellClamp> clamps)
+      : forces_(std::move(forces)),
+        cells_(clamps.size()),
+        own_masses_(4 * clamps.size()),
+        shares_(4 * clamps.size()) {
     EVERT_ASSERT(cells.nodes.size() == 4 * clamps.size(), std::to_string(clamps.size()));
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       const auto nodes = cells.nodes.subspan(4 * c, 4);
       std::copy(nodes.begin(), nodes.end(), cells_[c].nodes.begin());
-      cells_[c].shape = tet_shape(nodes, rest_positions);
-      cells_[c].clamp = clamps[c];
       std::fill_n(own_masses_.begin() + static_cast<std::ptrdiff_t>(4 * c), 4,
-                  cells.density * cells_[c].shape.volume / 4);
+                  cells.density * shapes[c].volume / 4);
+    }
+    shares_ = own_masses_;
+    reshape(shapes, clamps);
+  }
+
+  void reshape(std::span<const TetShape> shapes, std::span<const CellClamp> clamps) override {
+    EVERT_ASSERT(shapes.size() == cells_.size() && clamps.size() == cells_.size(),
+                 std::to_string(shapes.size()));
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      cells_[c].shape = shapes[c];
+      cells_[c].clamp = clamps[c];
     }
     set_filters();
+    set_mass_shares(std::vector<double>(shares_));
   }
 
   [[nodiscard]] double rest_stiffness_of(LocalIndex cell) const override {
@@ -50,6 +65,7 @@ class CompliantBlock final : public ElasticBlock {
   void set_material(const Material& material, const Damping& damping) override {
     forces_->set_material(material, damping);
     set_filters();
+    set_mass_shares(own_masses_);
   }
 
   // All else is that of the forces.
@@ -85,12 +101,18 @@ class CompliantBlock final : public ElasticBlock {
     return forces_->max_strain_rate(x, v);
   }
   void set_activation(double activation) override { forces_->set_activation(activation); }
+  [[nodiscard]] PlasticCells* plastic() override { return forces_->plastic(); }
   [[nodiscard]] std::size_t memory() const override {
-    return forces_->memory() + cells_.capacity() * sizeof(Cell) + own_masses_.capacity() * sizeof(double);
+    return forces_->memory() + cells_.capacity() * sizeof(Cell) + 2 * own_masses_.capacity() * sizeof(double);
   }
 
  private:
   void set_filters();
+  /// By how much a cell can have become stiffer since it was shaped as it is here.
+  [[nodiscard]] double flown_since(std::size_t cell) const {
+    const PlasticCells* plastic = std::as_const(*forces_).plastic();
+    return plastic != nullptr ? stiffness_growth(plastic->way(static_cast<LocalIndex>(cell)), lame()) : 1;
+  }
   [[nodiscard]] Lame lame() const {
     return std::visit([](const auto& model) { return model.lame; }, forces_->material());
   }
@@ -98,17 +120,17 @@ class CompliantBlock final : public ElasticBlock {
   std::unique_ptr<ElasticBlock> forces_;
   std::vector<Cell> cells_;
   std::vector<double> own_masses_;  // ρV/4, four a cell
+  std::vector<double> shares_;      // of the masses of the nodes, four a cell
 };
 
 /// Of the present material.
-void CompliantBlock::set_filters() {
+void ImplicitStiffnessBlock::set_filters() {
   for (auto& cell : cells_)
     cell.filter =
         strain_filter(element_modes(cell.shape, cell.clamp.masses, lame()), lame(), cell.clamp.limit);
-  set_mass_shares(own_masses_);
 }
 
-void CompliantBlock::set_mass_shares(std::span<const double> shares) {
+void ImplicitStiffnessBlock::set_mass_shares(std::span<const double> shares) {
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     auto& cell = cells_[c];
     TetMasses masses{};
@@ -119,13 +141,15 @@ void CompliantBlock::set_mass_shares(std::span<const double> shares) {
     cell.explicit_part = largest_eigenvalue(cell.shape, masses, lame(), cell.filter);
     cell.middle = cell.shape.volume * eigen_symmetric3(squares).values[1];
   }
+  shares_.assign(shares.begin(), shares.end());
   forces_->set_mass_shares(shares);
 }
 
 /// K ⪯ growth (K' + K_s) + spin 4 V Γ₂ M*, of which growth K_s is on the implicit side and limits nothing.
-StableStep CompliantBlock::stable_step(const double* x) const {
+StableStep ImplicitStiffnessBlock::stable_step(const double* x) const {
   double largest = 0;
-  for (const auto& cell : cells_) {
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const auto& cell = cells_[c];
     Mat3d gradient{};
     const auto at = [&](std::size_t a) {
       const double* node = x + 3 * static_cast<std::ptrdiff_t>(cell.nodes[a]);
@@ -133,7 +157,7 @@ StableStep CompliantBlock::stable_step(const double* x) const {
     };
     for (std::size_t a = 1; a < 4; ++a) gradient += outer(at(a) - at(0), cell.shape.gradients[a]);
     const auto now = stiffness_now(forces_->material(), svd3(gradient).sigma);
-    const double of_cell = now.growth * cell.explicit_part + 4 * now.spin * cell.middle;
+    const double of_cell = flown_since(c) * now.growth * cell.explicit_part + 4 * now.spin * cell.middle;
     largest =
         std::max(largest, of_cell < kernels::unresolvable<double> ? of_cell : kernels::unresolvable<double>);
   }
@@ -144,11 +168,11 @@ StableStep CompliantBlock::stable_step(const double* x) const {
 
 }  // namespace
 
-std::unique_ptr<ElasticBlock> make_compliant_block(std::unique_ptr<ElasticBlock> forces,
-                                                   const ElasticCells& cells,
-                                                   std::span<const Vec3d> rest_positions,
-                                                   std::span<const CellClamp> clamps) {
-  return std::make_unique<CompliantBlock>(std::move(forces), cells, rest_positions, clamps);
+std::unique_ptr<CompliantBlock> make_compliant_block(std::unique_ptr<ElasticBlock> forces,
+                                                     const ElasticCells& cells,
+                                                     std::span<const TetShape> shapes,
+                                                     std::span<const CellClamp> clamps) {
+  return std::make_unique<ImplicitStiffnessBlock>(std::move(forces), cells, shapes, clamps);
 }
 
 }  // namespace evert

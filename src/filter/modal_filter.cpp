@@ -2,9 +2,11 @@
 
 #include "evert/core/error.hpp"
 #include "evert/core/formatted.hpp"
+#include "evert/core/log.hpp"
 #include "evert/filter/compliant_block.hpp"
 
 #include "nodal_sums.hpp"
+#include "spare_mass.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,12 +59,64 @@ void require_stiffness_to_be_left(const FilterProblem& problem, const ModalFilte
                     options.stability_constant / std::sqrt(slowest[r]) / options.safety));
 }
 
+/// Collective. The nodes, of any rank, of cells that have gone some way, which begins anew.
+ChangedNodes nodes_of_flown(const FilterProblem& problem, ElasticForces& elastic) {
+  NodalSums flown(problem);
+  auto next = problem.cells.begin();
+  for (std::size_t e = 0; e < problem.mesh.cells.size(); ++e) {
+    const auto count = static_cast<std::size_t>(problem.mesh.cells[e].size());
+    std::vector<double> way(count);
+    elastic.way_of_flow(e, way);
+    for (std::size_t c = 0; c < count; ++c, ++next) {
+      if (!(way[c] > 0)) continue;
+      for (const LocalIndex node : next->nodes) flown.at(node, 0) = 1;
+      way[c] = 0;
+    }
+    elastic.set_way_of_flow(e, way);
+  }
+  flown.share();
+  ChangedNodes nodes(problem.masses.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = flown.at(static_cast<LocalIndex>(i), 0) > 0;
+  return nodes;
+}
+
+/// How far log F_p of a cell may go before it is looked at again: until its largest eigenvalue can have come
+/// a tenth of the limit nearer to that (materials/plasticity.hpp, stiffness_growth); that of a filtered one,
+/// a tenth of itself.
+double way_until_looked_at(const FilterCell& cell, const CellClamp& clamp, double limit) {
+  const double largest = clamp.limit > 0 ? limit : own_eigenvalue(cell);
+  const double bulk = std::max(cell.lame.lambda, 0.0) / (2 * cell.lame.mu);
+  return std::log1p(0.1 * limit / largest) / (2 + std::max(bulk, 1.0));
+}
+
+void bound_ways(const FilterProblem& problem, ElasticForces& elastic, const CellClamps& clamps,
+                double limit) {
+  std::size_t c = 0;
+  for (std::size_t e = 0; e < problem.mesh.cells.size(); ++e) {
+    std::vector<double> most(static_cast<std::size_t>(problem.mesh.cells[e].size()));
+    for (double& of_cell : most) {
+      of_cell = way_until_looked_at(problem.cells[c], clamps[c], limit);
+      ++c;
+    }
+    elastic.bound_way_of_flow(e, most);
+  }
+}
+
+/// Throws UserError for constraints of which the cells would have no strain to yield by.
+void require_strains_that_yield(const ElasticForces& elastic, FilterConstraints constraints) {
+  if (elastic.may_flow() && constraints != FilterConstraints::compliant)
+    throw UserError(std::string("filter.constraints: '") + name_of(constraints) +
+                    "' does not go with plasticity, which must be 'compliant': else filtered elements have "
+                    "less stress than they yield at");
+}
+
 }  // namespace
 
 ModalFilter::ModalFilter(const DistributedMesh& mesh, ElasticForces& elastic,
                          const ModalFilterOptions& options)
     : mesh_(mesh), elastic_(elastic), options_(options) {
   require_what_can_be_filtered(mesh, elastic);
+  require_strains_that_yield(elastic, options.constraints);
   if (options_.automatic()) {
     choose();
     return;
@@ -89,6 +143,7 @@ void ModalFilter::choose() {
   if (filtered_on_any_rank()) elastic_.separate(std::move(none));
   const auto problem = filter_problem(mesh_, elastic_);
   clamps_.assign(problem.cells.size(), {});
+  compliant_.assign(mesh_.cells.size(), nullptr);
   stiff_cells_.clear();
   shape_constraints_.clear();
   ++revision_;
@@ -119,20 +174,19 @@ void ModalFilter::material_changed(std::int32_t region) {
   update(problem, changed, CellClamps(clamps_));
 }
 
-void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& changed,
-                         const CellClamps& in_force) {
-  if (!std::isfinite(time_step())) return;  // of a body that was cut
-  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
+template <class IsStale>
+void ModalFilter::make_blocks(const FilterProblem& problem, IsStale&& is_stale) {
+  compliant_.resize(mesh_.cells.size());
   std::vector<SeparateCells> separate;
   std::size_t first = 0;
   for (std::size_t e = 0; e < mesh_.cells.size(); ++e) {
-    const auto count = static_cast<std::size_t>(mesh_.cells[e].size());
-    const auto of_entry = std::span(clamps_).subspan(first, count);
-    if (!std::ranges::equal(of_entry, std::span(in_force).subspan(first, count)))
-      separate.push_back(filtered_part(e, of_entry));
-    first += count;
+    if (is_stale(e, first)) separate.push_back(filtered_part(problem, e, first));
+    first += static_cast<std::size_t>(mesh_.cells[e].size());
   }
-  elastic_.separate(std::move(separate));
+  int changed = separate.empty() ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, mesh_.comm);
+  if (changed != 0) elastic_.separate(std::move(separate));
+  if (elastic_.may_flow()) bound_ways(problem, elastic_, clamps_, options_.limit_of(time_step()));
   if (options_.constraints == FilterConstraints::compliant)
     stiff_cells_ = evert::stiff_cells(problem, clamps_);
   if (options_.constraints == FilterConstraints::paper)
@@ -140,32 +194,83 @@ void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& chang
   ++revision_;
 }
 
-/// The cells of an entry that have a clamp, and a block of them.
-SeparateCells ModalFilter::filtered_part(std::size_t entry, std::span<const CellClamp> clamps) const {
+void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& changed,
+                         const CellClamps& in_force) {
+  if (!std::isfinite(time_step())) return;  // of a body that was cut
+  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
+  make_blocks(problem, [&](std::size_t entry, std::size_t first) {
+    const auto count = static_cast<std::size_t>(mesh_.cells[entry].size());
+    return !std::ranges::equal(std::span(clamps_).subspan(first, count),
+                               std::span(in_force).subspan(first, count));
+  });
+}
+
+bool ModalFilter::follow_flow() {
+  if (!elastic_.may_flow() || !std::isfinite(time_step())) return false;
+  int beyond = elastic_.flow_is_beyond_bounds() ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &beyond, 1, MPI_INT, MPI_MAX, mesh_.comm);
+  if (beyond == 0) return false;
+  const PhaseScope phase(Phase::filter);
+  const auto problem = filter_problem(mesh_, elastic_);
+  const auto changed = nodes_of_flown(problem, elastic_);
+  const auto in_force = clamps_;
+  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
+  make_blocks(problem, [&](std::size_t entry, std::size_t first) {
+    const auto same = [&](std::size_t c) { return (clamps_[c].limit > 0) == (in_force[c].limit > 0); };
+    for (std::size_t c = first; c < first + static_cast<std::size_t>(mesh_.cells[entry].size()); ++c)
+      if (!same(c)) return true;
+    if (compliant_[entry] != nullptr) reshape(problem, entry, first);
+    return false;
+  });
+  return true;
+}
+
+void ModalFilter::reshape(const FilterProblem& problem, std::size_t entry, std::size_t first) {
+  std::vector<TetShape> shapes;
+  CellClamps clamps;
+  for (std::size_t c = first; c < first + static_cast<std::size_t>(mesh_.cells[entry].size()); ++c) {
+    if (!(clamps_[c].limit > 0)) continue;
+    shapes.push_back(problem.cells[c].shape);
+    clamps.push_back(clamps_[c]);
+  }
+  compliant_[entry]->reshape(shapes, clamps);
+}
+
+SeparateCells ModalFilter::filtered_part(const FilterProblem& problem, std::size_t entry, std::size_t first) {
   const auto& all = mesh_.cells[entry];
+  compliant_[entry] = nullptr;
   SeparateCells part{.entry = entry};
   std::vector<LocalIndex> nodes;
-  std::vector<CellClamp> of_part;
+  std::vector<TetShape> shapes;
+  CellClamps clamps;
   LocalIndex interior = 0;
   for (LocalIndex cell = 0; cell < all.size(); ++cell) {
-    const auto& clamp = clamps[static_cast<std::size_t>(cell)];
-    if (!(clamp.limit > 0)) continue;
+    const std::size_t c = first + static_cast<std::size_t>(cell);
+    if (!(clamps_[c].limit > 0)) continue;
     part.cells.push_back(cell);
-    of_part.push_back(clamp);
-    const auto of_cell = std::span(all.nodes).subspan(4 * static_cast<std::size_t>(cell), 4);
-    nodes.insert(nodes.end(), of_cell.begin(), of_cell.end());
+    clamps.push_back(clamps_[c]);
+    const auto& of_cell = problem.cells[c];
+    shapes.push_back(of_cell.shape);
+    nodes.insert(nodes.end(), of_cell.nodes.begin(), of_cell.nodes.end());
     interior += cell < all.interior ? 1 : 0;
   }
   if (part.cells.empty()) return part;
   const auto& properties = elastic_.properties(all.region);
-  const ElasticCells cells{all.type, nodes, interior, properties.density, {}};
+  const ElasticCells cells{.type = all.type,
+                           .nodes = nodes,
+                           .interior = interior,
+                           .density = properties.density,
+                           .plasticity = properties.plasticity};
   const auto& rest = mesh_.rest_positions;
-  if (options_.constraints == FilterConstraints::compliant)
-    part.block = make_compliant_block(
+  if (options_.constraints == FilterConstraints::compliant) {
+    auto block = make_compliant_block(
         make_elastic_block(cells, rest, properties.material, properties.damping, properties.precision), cells,
-        rest, of_part);
-  else
-    part.block = make_filtered_block(cells, rest, properties.material, properties.damping, of_part);
+        shapes, clamps);
+    compliant_[entry] = block.get();
+    part.block = std::move(block);
+  } else {
+    part.block = make_filtered_block(cells, rest, properties.material, properties.damping, clamps);
+  }
   return part;
 }
 

@@ -54,11 +54,21 @@ LocalIndex select_spare_mass(const FilterProblem& problem, double limit, const C
   return looked_at;
 }
 
+/// The cells of an entry that can flow.
+void use_flown_shapes(const ElasticForces& elastic, std::size_t entry, std::span<FilterCell> cells) {
+  std::vector<Vec3d> gradients(4 * cells.size());
+  elastic.flown_gradients(entry, gradients);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    std::copy_n(gradients.begin() + static_cast<std::ptrdiff_t>(4 * c), 4, cells[c].shape.gradients.begin());
+}
+
 }  // namespace
 
 FilterProblem filter_problem(const DistributedMesh& mesh, const ElasticForces& elastic) {
   FilterProblem problem{mesh, elastic, {}, {}};
-  for (const auto& entry : mesh.cells) {
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    const auto& entry = mesh.cells[e];
+    const std::size_t first_cell = problem.cells.size();
     const auto& properties = elastic.properties(entry.region);
     const Lame lame = std::visit([](const auto& model) { return model.lame; }, properties.material);
     for (std::size_t first = 0; first < entry.nodes.size(); first += 4) {
@@ -67,6 +77,7 @@ FilterProblem filter_problem(const DistributedMesh& mesh, const ElasticForces& e
       std::copy(nodes.begin(), nodes.end(), cell.nodes.begin());
       problem.cells.push_back(cell);
     }
+    if (properties.plasticity) use_flown_shapes(elastic, e, std::span(problem.cells).subspan(first_cell));
   }
   NodeField masses(mesh);
   for (std::size_t i = 0; i < masses.owned().size(); ++i) masses.owned()[i] = elastic.masses()[i / 3];

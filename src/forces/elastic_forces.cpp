@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace evert {
 namespace {
@@ -152,11 +153,6 @@ void ElasticForces::update(NodeField& x, NodeField& f) {
   f.touched();
 }
 
-void ElasticForces::set_times(double last, double next) {
-  for (const auto& block : blocks_)
-    if (block != nullptr && block->plastic() != nullptr) block->plastic()->set_times(last, next);
-}
-
 template <class AtBoundary>
 void ElasticForces::damp(NodeField& v, NodeField& out, double factor, AtBoundary&& at_boundary) const {
   const PhaseScope scope(Phase::damping_apply, damping_flops * points_of(mesh_));
@@ -269,89 +265,6 @@ void ElasticForces::min_stretch(const NodeField& x, std::size_t entry, std::span
   }
 }
 
-bool ElasticForces::may_flow() const {
-  return std::ranges::any_of(
-      properties_, [](const ElasticProperties& of_region) { return of_region.plasticity.has_value(); });
-}
-
-PlasticState ElasticForces::plastic_state() const {
-  PlasticState sum;
-  for (const auto& block : blocks_) {
-    if (block == nullptr || block->plastic() == nullptr) continue;
-    const PlasticCells& cells = *block->plastic();
-    sum.work += cells.work();
-    sum.control_work += cells.control_work();
-    sum.goal_square += cells.square_of_goal();
-    sum.goal_distance_square += cells.square_distance_to_goal();
-  }
-  return sum;
-}
-
-template <class Work>
-void ElasticForces::for_each_flowing(std::size_t entry, Work&& work) const {
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    if (blocks_[b] == nullptr || blocks_[b]->plastic() == nullptr || entry_of(b) != entry) continue;
-    const auto cells = cells_in(b);
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      work(*blocks_[b]->plastic(), static_cast<LocalIndex>(i), static_cast<std::size_t>(cells[i]));
-  }
-}
-
-void ElasticForces::equivalent_plastic_strain(std::size_t entry, std::span<double> per_cell) const {
-  for_each_flowing(entry, [&](const PlasticCells& plastic, LocalIndex i, std::size_t cell) {
-    per_cell[cell] = plastic.equivalent_strain(i);
-  });
-}
-
-void ElasticForces::plastic_volume_ratio(std::size_t entry, std::span<double> per_cell) const {
-  for_each_flowing(entry, [&](const PlasticCells& plastic, LocalIndex i, std::size_t cell) {
-    per_cell[cell] = plastic.volume_ratio(i);
-  });
-}
-
-std::size_t ElasticForces::flow_numbers(std::size_t entry) const {
-  const auto& cells = mesh_.cells[entry];
-  if (!properties(cells.region).plasticity) return 0;
-  return PlasticCells::numbers_per_point * static_cast<std::size_t>(quadrature_points(cells.type)) +
-         PlasticCells::numbers_besides;
-}
-
-std::vector<double> ElasticForces::flow(std::size_t entry) const {
-  const std::size_t count = flow_numbers(entry);
-  std::vector<double> numbers(count * static_cast<std::size_t>(mesh_.cells[entry].size()));
-  for_each_flowing(entry, [&](const PlasticCells& plastic, LocalIndex i, std::size_t cell) {
-    plastic.get(i, std::span(numbers).subspan(count * cell, count));
-  });
-  return numbers;
-}
-
-void ElasticForces::set_flow(std::size_t entry, std::span<const double> numbers) {
-  const std::size_t count = flow_numbers(entry);
-  const auto cells = static_cast<std::size_t>(mesh_.cells[entry].size());
-  const std::size_t row = cells > 0 ? numbers.size() / cells : 0;
-  EVERT_ASSERT(row >= count || cells == 0, std::to_string(row));
-  for_each_flowing(entry, [&](PlasticCells& plastic, LocalIndex i, std::size_t cell) {
-    plastic.set(i, numbers.subspan(row * cell, count));
-  });
-}
-
-std::vector<GlobalIndex> ElasticForces::set_goal(std::int32_t region, const PlasticControl& control,
-                                                 const GoalPosition& position) {
-  std::vector<GlobalIndex> refused;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    if (!is_of_region(b, region) || blocks_[b]->plastic() == nullptr) continue;
-    const std::size_t entry = entry_of(b);
-    const auto cells = cells_in(b);
-    const auto of_cell = [&](LocalIndex i, std::size_t node) {
-      return position(entry, cells[static_cast<std::size_t>(i)], node);
-    };
-    for (const LocalIndex i : blocks_[b]->plastic()->set_goal(control, of_cell))
-      refused.push_back(
-          mesh_.cells[entry].global_ids[static_cast<std::size_t>(cells[static_cast<std::size_t>(i)])]);
-  }
-  return refused;
-}
-
 std::size_t ElasticForces::entry_of(std::size_t block) const {
   return block < mesh_.cells.size() ? block : separations_[block - mesh_.cells.size()].entry;
 }
@@ -394,6 +307,8 @@ void ElasticForces::separate(std::vector<SeparateCells> separate_cells) {
   EVERT_ASSERT(consistent_mass_ == nullptr, std::to_string(separate_cells.size()));
   for (auto& [entry, cells, block] : separate_cells) {
     const auto flown = flow(entry);
+    std::vector<double> way(static_cast<std::size_t>(mesh_.cells[entry].size()));
+    way_of_flow(entry, way);
     for (std::size_t s = separations_.size(); s-- > 0;) {
       if (separations_[s].entry != entry) continue;
       separations_.erase(separations_.begin() + static_cast<std::ptrdiff_t>(s));
@@ -404,7 +319,11 @@ void ElasticForces::separate(std::vector<SeparateCells> separate_cells) {
       blocks_.push_back(std::move(block));
     }
     blocks_[entry] = make_block(entry, cells_in(entry));
+    for (const auto& goal : goals_)
+      for (std::size_t b = 0; b < blocks_.size(); ++b)
+        if (entry_of(b) == entry) apply(goal, b);
     set_flow(entry, flown);
+    set_way_of_flow(entry, way);
   }
   balance_masses(mesh_, halo_, masses_, blocks_);
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace evert {
@@ -26,6 +27,8 @@ PlasticCells::PlasticCells(const Plasticity& law, ElementBlock& block, DeformSha
       drift_(block.cell_of_lane.size()),
       settled_largest_(block.cell_of_lane.size()),
       settled_spin_(block.cell_of_lane.size()),
+      way_from_(static_cast<std::size_t>(block.cells)),
+      way_until_(static_cast<std::size_t>(block.cells), std::numeric_limits<double>::infinity()),
       slot_of_cell_(static_cast<std::size_t>(block.cells)) {
   for (std::size_t i = 0; i < rest_shapes_.size(); ++i) rest_shapes_[i] = block.shapes[i];
   for (std::size_t slot = 0; slot < block.cell_of_lane.size(); ++slot) {
@@ -67,12 +70,9 @@ std::vector<LocalIndex> PlasticCells::set_goal(const PlasticControl& control, co
                          std::log(std::max(svd.sigma[2], 0.0))};
       within = within && std::abs(strain[0]) <= most && std::abs(strain[2]) <= most;
       const Mat3d log_stretch = times_transpose(svd.v * diagonal(strain), svd.v);
-      const auto lanes = static_cast<std::size_t>(block_.lanes);
-      const std::size_t first = (slot / lanes * points + q) * goal_numbers * lanes + slot % lanes;
-      std::size_t i = 0;
-      for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column <= row; ++column)
-          goal[first + i++ * lanes] = log_stretch(row, column);
+      for (std::size_t row = 0, i = 0; row < 3; ++row)
+        for (std::size_t column = 0; column <= row; ++column, ++i)
+          goal[goal_index(slot, q, i)] = log_stretch(row, column);
     }
     if (!within) beyond.push_back(cell);
   }
@@ -83,14 +83,10 @@ std::vector<LocalIndex> PlasticCells::set_goal(const PlasticControl& control, co
 }
 
 Mat3d PlasticCells::goal(std::size_t slot, std::size_t q) const {
-  const auto lanes = static_cast<std::size_t>(block_.lanes);
-  const std::size_t first =
-      (slot / lanes * block_.element.points() + q) * goal_numbers * lanes + slot % lanes;
   Mat3d symmetric{};
-  std::size_t i = 0;
-  for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t column = 0; column <= row; ++column)
-      symmetric(row, column) = symmetric(column, row) = goal_[first + i++ * lanes];
+  for (std::size_t row = 0, i = 0; row < 3; ++row)
+    for (std::size_t column = 0; column <= row; ++column, ++i)
+      symmetric(row, column) = symmetric(column, row) = goal_[goal_index(slot, q, i)];
   return symmetric;
 }
 
@@ -111,32 +107,38 @@ double PlasticCells::square_distance_to_goal() const {
   for (const LocalIndex of_cell : slot_of_cell_)
     for (std::size_t q = 0; q < block_.element.points(); ++q) {
       const auto slot = static_cast<std::size_t>(of_cell);
-      const auto svd = svd3(deformation(slot, q));
-      const Vec3d strain{std::log(svd.sigma[0]), std::log(svd.sigma[1]), std::log(svd.sigma[2])};
-      const Mat3d left = times_transpose(svd.v * diagonal(strain), svd.v) - goal(slot, q);
+      const Mat3d left = kernels::log_stretch(deformation(slot, q)) - goal(slot, q);
       sum += volume(slot, q) * contract(left, left);
     }
   return sum;
 }
 
-double PlasticCells::volume(std::size_t slot, std::size_t q) const {
+std::size_t PlasticCells::index(std::size_t slot, std::size_t q, std::size_t number,
+                                std::size_t numbers) const {
   const auto lanes = static_cast<std::size_t>(block_.lanes);
-  return block_.volumes[(slot / lanes * block_.element.points() + q) * lanes + slot % lanes];
+  const std::size_t point = slot / lanes * block_.element.points() + q;
+  return (point * numbers + number) * lanes + slot % lanes;
+}
+
+double PlasticCells::volume(std::size_t slot, std::size_t q) const {
+  return block_.volumes[index(slot, q, 0, 1)];
 }
 
 std::size_t PlasticCells::index(std::size_t slot, std::size_t q, std::size_t number) const {
-  const auto lanes = static_cast<std::size_t>(block_.lanes);
-  const std::size_t point = slot / lanes * block_.element.points() + q;
-  return (point * plastic_numbers + number) * lanes + slot % lanes;
+  return index(slot, q, number, plastic_numbers);
+}
+
+std::size_t PlasticCells::goal_index(std::size_t slot, std::size_t q, std::size_t number) const {
+  return index(slot, q, number, goal_numbers);
 }
 
 std::size_t PlasticCells::slot_of(LocalIndex cell) const {
   return static_cast<std::size_t>(slot_of_cell_[static_cast<std::size_t>(cell)]);
 }
 
-Mat3d PlasticCells::deformation(std::size_t slot, std::size_t q) const {
+LowerTriangle<double> PlasticCells::deformation(std::size_t slot, std::size_t q) const {
   const auto number = [&](std::size_t i) { return state_[index(slot, q, i)]; };
-  return matrix(LowerTriangle<double>{number(0), number(1), number(2), number(3), number(4), number(5)});
+  return {number(0), number(1), number(2), number(3), number(4), number(5)};
 }
 
 template <class ValueOf>
@@ -179,6 +181,37 @@ void PlasticCells::settle(std::size_t slot, float largest, float spin) {
   drift_[slot] = 0;
 }
 
+double PlasticCells::largest_alpha(LocalIndex cell) const {
+  const auto slot = slot_of(cell);
+  double largest = 0;
+  for (std::size_t q = 0; q < block_.element.points(); ++q)
+    largest = std::max(largest, state_[index(slot, q, 6)]);
+  return largest;
+}
+
+double PlasticCells::way(LocalIndex cell) const {
+  return largest_alpha(cell) - way_from_[static_cast<std::size_t>(cell)];
+}
+
+bool PlasticCells::is_beyond_bounds() const {
+  for (LocalIndex cell = 0; cell < block_.cells; ++cell)
+    if (largest_alpha(cell) > way_until_[static_cast<std::size_t>(cell)]) return true;
+  return false;
+}
+
+void PlasticCells::bound_way(LocalIndex cell, double most) {
+  way_until_[static_cast<std::size_t>(cell)] = way_from_[static_cast<std::size_t>(cell)] + most;
+}
+
+void PlasticCells::set_way(LocalIndex cell, double way) {
+  way_from_[static_cast<std::size_t>(cell)] = largest_alpha(cell) - way;
+}
+
+void PlasticCells::shape_gradients(LocalIndex cell, std::span<Vec3d> gradients) const {
+  const NodeVectors all = rest_point(block_, slot_of(cell), 0).gradients;
+  std::copy_n(all.begin(), block_.element.nodes(), gradients.begin());
+}
+
 void PlasticCells::exchange_shapes() {
   std::swap_ranges(rest_shapes_.begin(), rest_shapes_.end(), arrays_.shapes);
 }
@@ -208,18 +241,13 @@ void PlasticCells::set(LocalIndex cell, std::span<const double> numbers) {
 }
 
 Mat3d PlasticCells::rotation(std::size_t slot, std::size_t q) const {
-  return polar_rotation(deflate(deformation(slot, q)));
-}
-
-Mat3d PlasticCells::inverse_stretch(LocalIndex cell, std::size_t q) const {
-  const auto svd = svd3(deformation(slot_of(cell), q));
-  const Vec3d inverse{1 / svd.sigma[0], 1 / svd.sigma[1], 1 / svd.sigma[2]};
-  return times_transpose(svd.v * diagonal(inverse), svd.v);
+  return polar_rotation(deflate(matrix(deformation(slot, q))));
 }
 
 std::size_t PlasticCells::memory() const {
   return (rest_shapes_.capacity() + state_.capacity() + goal_.capacity()) * sizeof(double) +
-         3 * drift_.capacity() * sizeof(float) + slot_of_cell_.capacity() * sizeof(LocalIndex);
+         3 * drift_.capacity() * sizeof(float) + 2 * way_from_.capacity() * sizeof(double) +
+         slot_of_cell_.capacity() * sizeof(LocalIndex);
 }
 
 }  // namespace evert

@@ -108,11 +108,6 @@ void update_rest_stiffness(const ElementBlock& block, std::span<const double> ma
   stiffness.spin[slot] = rounded_up(of_cell.spin);
 }
 
-double stiffness_growth(double drift, const Lame& lame) {
-  const double s = std::expm1(drift);
-  return (1 + s) * (1 + s) * (1 + s * std::max(lame.lambda, 0.0) / (2 * lame.mu));
-}
-
 std::vector<double> own_mass_shares(const ElementBlock& block, double density) {
   const ElementView& element = block.element;
   std::vector<double> shares(static_cast<std::size_t>(block.cells) * element.nodes());

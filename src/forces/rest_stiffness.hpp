@@ -35,11 +35,6 @@ struct RestStiffness {
 void update_rest_stiffness(const ElementBlock& block, std::span<const double> mass_shares, const Lame& lame,
                            const PlasticCells* flown, std::size_t slot, RestStiffness& stiffness);
 
-/// λ_e grows at most by this factor when log F_p goes a way of length `drift`: with F_p⁻¹ then F_p⁻¹ (I + E),
-/// ‖E‖ ≤ s = e^drift − 1, a gradient G becomes G (I + E), and 2μ‖G‖² + λ(tr G)² at most (1 + s)² (1 + sλ/2μ)
-/// times as large.
-[[nodiscard]] double stiffness_growth(double drift, const Lame& lame);
-
 /// The shares that a cell contributed itself, ∫ ρ N_a dX: eq. (9) as printed.
 [[nodiscard]] std::vector<double> own_mass_shares(const ElementBlock& block, double density);
 

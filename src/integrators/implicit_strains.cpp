@@ -1,5 +1,7 @@
 #include "evert/integrators/implicit_strains.hpp"
 
+#include "evert/core/log.hpp"
+
 #include "vec_view.hpp"
 #include <algorithm>
 
@@ -28,6 +30,7 @@ void ImplicitStrains::rebuild() {
 }
 
 void ImplicitStrains::prepare(const NodeField& x, double dt, std::uint64_t state) {
+  const PhaseScope phase(Phase::filter);
   if (revision_ != filter_.revision()) rebuild();
   // Steps of one length differ by the rounding of the time: θ need not follow that.
   const double length = static_cast<float>(dt);
@@ -50,6 +53,7 @@ void ImplicitStrains::prepare(const NodeField& x, double dt, std::uint64_t state
 
 /// By Woodbury's identity: M⁻¹ b − W Jᵀ (1/w + J W Jᵀ)⁻¹ J M⁻¹ b.
 void ImplicitStrains::solve(Vec momentum, Vec change, std::span<const NodeConstraint> held) {
+  const PhaseScope phase(Phase::filter);
   const auto masses = elastic_.masses();
   {
     const VecView given(momentum);
@@ -66,6 +70,7 @@ void ImplicitStrains::solve(Vec momentum, Vec change, std::span<const NodeConstr
 }
 
 void ImplicitStrains::add_product(NodeField& v, NodeField& out) {
+  const PhaseScope phase(Phase::filter);
   rows_->apply(v, values_);
   for (std::size_t k = 0; k < values_.size(); ++k) values_[k] /= rows_->compliances()[k];
   rows_->add_transposed(values_, out);

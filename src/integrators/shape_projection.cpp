@@ -2,6 +2,7 @@
 
 #include "evert/core/error.hpp"
 #include "evert/core/formatted.hpp"
+#include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
 
 #include <algorithm>
@@ -105,6 +106,7 @@ double ShapeProjection::take_violations(NodeField& x) {
 }
 
 void ShapeProjection::begin(const NodeField& x, std::span<const NodeConstraint> prescribed) {
+  const PhaseScope phase(Phase::filter);
   bool is_new = follow(prescribed);
   if (filter_ != nullptr && revision_ != filter_->revision()) {
     all_ = filter_->shape_constraints();
@@ -148,6 +150,7 @@ void ShapeProjection::give_up(double left) const {
 }
 
 int ShapeProjection::project(NodeField& x, NodeField& v, std::span<const NodeConstraint> held, double dt) {
+  const PhaseScope phase(Phase::filter);
   std::ranges::copy(x.owned(), before_.owned().begin());
   double left = take_violations(x);
   int iterations = 0;

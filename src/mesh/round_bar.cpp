@@ -6,6 +6,7 @@
 #include "evert/mesh/boundary.hpp"
 
 #include "mesh_size.hpp"
+#include "split_hexahedra.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,7 +116,8 @@ Mesh generate_round_bar(const RoundBar& bar) {
   const int layers = layers_of(bar);
   const double of_layer = (bar.inner_radius > 0 ? 0.0 : static_cast<double>(bar.quarter) * bar.quarter) +
                           4.0 * bar.quarter * bar.rings;
-  require_possible_size(of_layer * layers, of_layer * (layers + 1));
+  require_possible_size((bar.cell == RoundBarCells::tet6 ? 6 : 1) * of_layer * layers,
+                        of_layer * (layers + 1));
   const Section section = section_of(bar);
   const auto nodes = static_cast<GlobalIndex>(section.nodes.size());
   Mesh mesh{.nodes = {}, .cells = {}, .regions = {"body"}, .node_sets = {}};
@@ -129,7 +131,7 @@ Mesh generate_round_bar(const RoundBar& bar) {
         for (const int node : cell) block.nodes.push_back((GlobalIndex{layer} + above) * nodes + node);
       block.region.push_back(0);
     }
-  mesh.cells.push_back(std::move(block));
+  mesh.cells.push_back(bar.cell == RoundBarCells::tet6 ? split_hexahedra(block) : std::move(block));
   NodeSet lower{"y_min", {}}, upper{"y_max", {}};
   for (GlobalIndex node = 0; node < nodes; ++node) {
     lower.nodes.push_back(node);

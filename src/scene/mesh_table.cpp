@@ -118,9 +118,9 @@ const Table<WedgeStack>& wedge_stack() {
 const Table<RoundBar>& round_bar() {
   static const auto table =
       Table<RoundBar>(
-          "A bar or a tube of hexahedra around the y axis: a square of cells in the middle and rings around "
-          "it, or rings "
-          "alone. Node sets: y_min, y_max, surface.")
+          "A bar or a tube around the y axis, of hexahedra or these cut into tetrahedra: a square of cells "
+          "in "
+          "the middle and rings around it, or rings alone. Node sets: y_min, y_max, surface.")
           .required("radius", &RoundBar::radius, length(), "0.0032", "Of the bar.")
           .required("length", &RoundBar::length, length(), "0.0324", "Along the y axis.")
           .optional("inner_radius", &RoundBar::inner_radius, number("m", at_least(0)), "0.003",
@@ -132,6 +132,10 @@ const Table<RoundBar>& round_bar() {
                     "surface.")
           .optional("layers", &RoundBar::layers, integer(0, 1000000), "40",
                     "Cells along the axis; 0: about as long as they are wide.")
+          .optional("cell", &RoundBar::cell,
+                    one_of<RoundBarCells>({{"hex8", RoundBarCells::hex8, "hexahedra"},
+                                           {"tet6", RoundBarCells::tet6, "6 tetrahedra a hexahedron"}}),
+                    "tet6", "What they are.")
           .then([](RoundBar& bar, const Value& map, const std::string& path) {
             if (bar.inner_radius < bar.radius) return;
             const auto& value = *map.find("inner_radius");

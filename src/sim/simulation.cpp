@@ -5,7 +5,9 @@
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
 
+#include "flow_goals.hpp"
 #include "motion.hpp"
+#include "requirements.hpp"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -68,47 +70,6 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[9], values[10], values[11]}};
 }
 
-/// Throws UserError where tangents are asked for that nobody computes.
-void require_known_tangents(const SimulationDefinition& definition) {
-  if (definition.method == IntegrationMethod::quasistatic &&
-      std::ranges::any_of(definition.properties, &ElasticProperties::mean_dilatation))
-    throw UserError("mean_dilatation: does not go with 'integrator.method: quasistatic'");
-}
-
-/// Throws UserError where flow and the way to advance do not go together.
-void require_steps_that_flow(const SimulationDefinition& definition) {
-  const bool flows = std::ranges::any_of(
-      definition.properties, [](const auto& of_region) { return of_region.plasticity.has_value(); });
-  if (!flows) return;
-  if (definition.method == IntegrationMethod::quasistatic)
-    throw UserError("plasticity: flow needs time, which 'integrator.method: quasistatic' has none of");
-  if (definition.filter)
-    throw UserError(
-        "filter: does not go with plasticity: elements are filtered in the shape that they were made in");
-}
-
-/// Contact, friction and schemes without solves know masses of nodes, and what is at rest knows none.
-MassForm possible_mass(const SimulationDefinition& definition) {
-  require_steps_that_flow(definition);
-  require_known_tangents(definition);
-  if (definition.mass == MassForm::consistent &&
-      (!definition.obstacles.empty() || definition.method != IntegrationMethod::newmark))
-    throw UserError(
-        "consistent masses go neither with obstacles nor with methods but newmark: must be lumped");
-  return definition.mass;
-}
-
-/// The Euler schemes have no solve after the impacts, which alone tells how hard a body is hit that gives
-/// way.
-std::vector<std::unique_ptr<Obstacle>> possible_obstacles(SimulationDefinition& definition) {
-  const bool solves = definition.method != IntegrationMethod::symplectic_euler &&
-                      definition.method != IntegrationMethod::explicit_euler;
-  for (const auto& obstacle : definition.obstacles)
-    if (!solves && obstacle->body() != nullptr)
-      throw UserError("'" + obstacle->name() + "': a rigid body with a mass needs newmark or verlet");
-  return std::move(definition.obstacles);
-}
-
 /// Collective. None where the definition has none.
 std::unique_ptr<ModalFilter> make_filter(const SimulationDefinition& definition, const DistributedMesh& mesh,
                                          ElasticForces& elastic) {
@@ -131,35 +92,6 @@ std::unique_ptr<ImplicitStrains> make_implicit_strains(const DistributedMesh& me
                                                        const ModalFilter* filter) {
   if (filter == nullptr || filter->options().constraints != FilterConstraints::compliant) return nullptr;
   return std::make_unique<ImplicitStrains>(mesh, elastic, *filter);
-}
-
-/// Collective. Throws UserError on all ranks, with some of the cells, where the goal is none that can be
-/// reached.
-void set_goal(ElasticForces& elastic, const DistributedMesh& mesh, const FlowGoal& goal) {
-  constexpr std::size_t shown = 8;
-  constexpr GlobalIndex none = std::numeric_limits<GlobalIndex>::max();
-  MPI_Comm comm = mesh.comm;
-  auto refused =
-      elastic.set_goal(goal.region, goal.control, [&](std::size_t entry, LocalIndex cell, std::size_t node) {
-        return goal.position(mesh, entry, cell, node);
-      });
-  auto count = static_cast<GlobalIndex>(refused.size());
-  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, comm);
-  if (count == 0) return;
-  std::ranges::sort(refused);
-  refused.resize(shown, none);
-  std::vector<GlobalIndex> all(shown * static_cast<std::size_t>(size_of(comm)));
-  MPI_Allgather(refused.data(), shown, MPI_INT64_T, all.data(), shown, MPI_INT64_T, comm);
-  std::ranges::sort(all);
-  std::string numbers;
-  for (std::size_t i = 0; i < shown && all[i] != none; ++i)
-    numbers += (i > 0 ? ", " : " ") + std::to_string(all[i]);
-  const double limit = elastic.properties(goal.region).plasticity->limit;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", limit);
-  throw UserError(goal.name + ": " + std::to_string(count) +
-                  " elements would be turned inside out or flat, or stretched or compressed more than " +
-                  text.data() + " times, the 'limit' of the plasticity; the first are" + numbers);
 }
 
 std::string impulse_name(const Obstacle& obstacle, const char* what, std::size_t axis) {
@@ -208,6 +140,7 @@ StepReport Simulation::step_to(double end_time) {
   const double dt = end_time - system_.time;
   if (!(dt > 0)) give_up("the time step is lost in the rounding of the time");
   apply_due_events();
+  follow_flow();
   refresh_forces();
   activate(end_time);  // forces are computed next at the end of the step
   auto report = advance(dt);
@@ -296,6 +229,12 @@ double Simulation::next_event() const {
 void Simulation::apply_due_events() {
   while (events_done_ < events_.size() && events_[events_done_].time <= system_.time)
     events_[events_done_++].apply(*this);
+}
+
+void Simulation::follow_flow() {
+  if (!filter_ || !filter_->follow_flow()) return;
+  time_step_.reset();
+  forces_stale_ = true;
 }
 
 void Simulation::refresh_forces() {
@@ -494,6 +433,7 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   forces_stale_ = true;
   while (events_done_ < std::min(events_done, events_.size())) events_[events_done_++].apply(*this);
   for (std::size_t e = 0; e < flow.size(); ++e) elastic_.set_flow(e, flow[e]);
+  follow_flow();
   refresh_forces();
   time_step_.restore(control);  // after the events, which reset it
   agree_on_state();

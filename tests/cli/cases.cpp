@@ -75,6 +75,11 @@ const std::vector<Case> good_runs{
      .files = {scene()},
      .exit_code = 0},
     {.name = "check", .command = "check scene.yaml", .files = {scene()}, .exit_code = 0, .says = {"48"}},
+    {.name = "check_tells_what_features_cost",
+     .command = "check scene.yaml",
+     .files = {scene()},
+     .exit_code = 0,
+     .says = {"plastic state 0.0 MB", "work         force", "obstacles: a step costs ", " MB"}},
     // 0.4 ms at most, from stop to stop: 0.5 and 0.5 ms around the event, 1 ms to the next frame.
     {.name = "check_counts_steps",
      .command = "check scene.yaml -set integrator.time_step=4e-4",

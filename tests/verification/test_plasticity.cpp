@@ -27,7 +27,7 @@ bodies:
          mesh + R"(
     transform: {translate: [0, 0.22, 0]}
     density: 1000
-    velocity: [1, -6, 0]
+    velocity: [1, -6, 0.7]
     spin: [0, 0, 4]
     material: {model: neo_hookean, youngs_modulus: 2.0e5, poissons_ratio: 0.4}
     damping: {model: rotated, stiffness_proportional: 1.0e-4}
@@ -43,11 +43,14 @@ events:
 const std::string tets = "{generate: ball, radius: 0.2, edge_length: 0.1}";
 const std::string hexes = "{generate: round_bar, radius: 0.2, length: 0.4, quarter: 2, rings: 2, layers: 4}";
 
-/// Of each kind of flow. (Of a goal that bends a bar, without strength, ranks differ:
-/// docs/design/plasticity.md.)
-const std::vector<std::string> scenes{dented(tets), dented(hexes), dented(tets, ", relaxation_time: 0.01"),
+/// Of each kind of flow. Not along a plane of symmetry: a body that rolls there on rough ground is like a
+/// pencil on its tip, and rounding decides where it goes.
+const std::vector<std::string> scenes{dented(tets),
+                                      dented(hexes),
+                                      dented(tets, ", relaxation_time: 0.01"),
                                       dented(tets, ", isochoric: false, goal: {flatten: 0.5, strength: 3}"),
-                                      dented(hexes, ", goal: {twist: 90}")};
+                                      dented(hexes, ", goal: {twist: 90}"),
+                                      dented(hexes, ", goal: {bend: 2}")};
 
 TEST(PlasticRanks, AgreeAfter200Steps) {
   double largest = 0;

@@ -20,11 +20,12 @@ enum class Phase : std::size_t {
   assembly,       ///< stiffness matrices of the quasistatic solves
   static_solve,   ///< the quasistatic solves around forces and assembly
   contact,        ///< obstacles and friction
+  filter,         ///< selection of filtered elements, their implicit part or their projection
   vector_update,  ///< nodal updates of positions and velocities
   halo,           ///< sending ghost values, and waiting for them
   io,             ///< frames, logs and checkpoints
 };
-inline constexpr std::size_t phase_count = 11;
+inline constexpr std::size_t phase_count = 12;
 [[nodiscard]] std::string_view name_of(Phase phase);
 
 /// Registers the phases as PETSc events, and "Evert set-up" and "Evert time steps" as stages. Call once after

@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/filter/automatic_step.hpp"
+#include "evert/filter/compliant_block.hpp"
 #include "evert/filter/modal_filter_options.hpp"
 #include "evert/filter/selection.hpp"
 #include "evert/filter/shape_constraints.hpp"
@@ -38,6 +39,10 @@ class ModalFilter {
   /// Throws UserError on all ranks when nothing of the new stiffness would be left.
   void material_changed(std::int32_t region);
 
+  /// Collective. Filters anew what has flown noticeably since it was last looked at, in the shape that it has
+  /// now, and what is next to it. Returns true where something has: then forces are to be updated.
+  bool follow_flow();
+
   /// As asked for.
   [[nodiscard]] const ModalFilterOptions& options() const { return options_; }
   /// The step that the filter is for [s]; infinity where an automatic one does not pay and nothing is
@@ -64,13 +69,20 @@ class ModalFilter {
   [[nodiscard]] bool filtered_on_any_rank() const;
   /// Collective. Selects anew, and makes the blocks of the entries that are not as the clamps `in_force` say.
   void update(const FilterProblem& problem, const ChangedNodes& changed, const CellClamps& in_force);
-  [[nodiscard]] SeparateCells filtered_part(std::size_t entry, std::span<const CellClamp> clamps) const;
+  /// Collective. Makes the blocks of entries for which `is_stale(entry, its first cell)`.
+  template <class IsStale>
+  void make_blocks(const FilterProblem& problem, IsStale&& is_stale);
+  /// The cells of an entry that have a clamp, and a block of them. `first`: its first cell in the problem.
+  [[nodiscard]] SeparateCells filtered_part(const FilterProblem& problem, std::size_t entry,
+                                            std::size_t first);
+  void reshape(const FilterProblem& problem, std::size_t entry, std::size_t first);
 
   const DistributedMesh& mesh_;
   ElasticForces& elastic_;
   ModalFilterOptions options_;
   std::optional<AutomaticStep> automatic_;
   CellClamps clamps_;
+  std::vector<CompliantBlock*> compliant_;  // per entry, of `elastic_`; null where it has none
   std::vector<StiffCell> stiff_cells_;
   std::vector<ShapeConstraint> shape_constraints_;
   std::uint64_t revision_ = 0;

@@ -25,7 +25,7 @@ enum class FilterSelection {
 /// A tetrahedron that may have to be filtered.
 struct FilterCell {
   std::array<LocalIndex, 4> nodes{};  ///< local numbers
-  TetShape shape{};
+  TetShape shape{};    ///< as it has flown, if it can: then its gradients are turned, by any rotation
   double density = 0;  ///< [kg/m³]
   Lame lame{};
 

@@ -103,6 +103,18 @@ class ElasticForces {
   [[nodiscard]] std::vector<GlobalIndex> set_goal(std::int32_t region, const PlasticControl& control,
                                                   const GoalPosition& position);
 
+  /// How far log F_p of the cells of an entry has gone at most since the beginning of its way; nothing where
+  /// its region cannot flow.
+  void way_of_flow(std::size_t entry, std::span<double> per_cell) const;
+  /// From now on they are so long, and may become so long.
+  void set_way_of_flow(std::size_t entry, std::span<const double> per_cell);
+  void bound_way_of_flow(std::size_t entry, std::span<const double> per_cell);
+  /// True where a cell of this rank has gone farther. Does not allocate.
+  [[nodiscard]] bool flow_is_beyond_bounds() const;
+  /// ∂N_a/∂X of an entry of tetrahedra, four a cell, in the shape that has flown and for every cell but for a
+  /// rotation; those of regions that cannot flow are left as they are.
+  void flown_gradients(std::size_t entry, std::span<Vec3d> gradients) const;
+
   /// Lumped masses of the owned nodes [kg], whatever M is.
   [[nodiscard]] std::span<const double> masses() const { return masses_; }
   /// M 1 per owned node [kg]: what a node has of the weight, and its velocity of the momentum. The lumped
@@ -136,18 +148,27 @@ class ElasticForces {
   void set_activation(std::int32_t region, double activation);
   /// Collective. Takes cells out of the block of their entry and gives them to one of their own, and earlier
   /// ones of the listed entries back; entries that no rank lists stay as they are. Masses stay those of all
-  /// cells. Masses must be lumped. Call update() afterwards.
+  /// cells. Masses must be lumped. What has flown, and goals, stay with the cells. Call update() afterwards.
   void separate(std::vector<SeparateCells> separate_cells);
-  /// Bytes of element data on this rank.
+  /// Bytes of element data on this rank, and of what of them flow has.
   [[nodiscard]] std::size_t memory() const;
+  [[nodiscard]] std::size_t plastic_memory() const;
 
  private:
+  struct Goal {
+    std::int32_t region;
+    PlasticControl control;
+    GoalPosition position;
+  };
+
   [[nodiscard]] bool is_of_region(std::size_t block, std::int32_t region) const;
-  /// Of the cells of an entry that are in `cells`, ascending.
+  /// Of a block in which nothing has flown. Returns the global numbers of the cells where it is not allowed.
+  std::vector<GlobalIndex> apply(const Goal& goal, std::size_t block);
   /// Calls `work(plastic cells, number in the block, cell of the entry)` for all cells of an entry that can
   /// flow.
   template <class Work>
   void for_each_flowing(std::size_t entry, Work&& work) const;
+  /// Of the cells of an entry that are in `cells`, ascending.
   [[nodiscard]] std::unique_ptr<ElasticBlock> make_block(std::size_t entry,
                                                          std::span<const LocalIndex> cells) const;
   [[nodiscard]] std::vector<double> densities() const;  // per region
@@ -165,6 +186,7 @@ class ElasticForces {
   Halo halo_;
   std::vector<ElasticProperties> properties_;          // per region
   std::vector<std::unique_ptr<ElasticBlock>> blocks_;  // see blocks()
+  std::vector<Goal> goals_;
   struct Separation {
     std::size_t entry;
     std::vector<LocalIndex> cells;

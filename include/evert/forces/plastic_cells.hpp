@@ -3,6 +3,7 @@
 #include "evert/elements/element_block.hpp"
 #include "evert/forces/kernels/cell_batch.hpp"
 #include "evert/materials/plasticity.hpp"
+#include "evert/math/lower_triangle.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -61,26 +62,40 @@ class PlasticCells {
     return {settled_largest_[slot], settled_spin_[slot], drift_[slot]};
   }
   void settle(std::size_t slot, float largest, float spin);
+  /// The way that log F_p of a cell has gone at most, at any of its points, since it was last set.
+  [[nodiscard]] double way(LocalIndex cell) const;
+  void set_way(LocalIndex cell, double way);
+  /// True where some cell has gone farther than it may; none has a bound until one is set.
+  [[nodiscard]] bool is_beyond_bounds() const;
+  /// How long the way of a cell may become.
+  void bound_way(LocalIndex cell, double most);
+  /// ∂N_a/∂X [1/m] of the nodes of a cell at its first point, in the shape that has flown; but for a rotation
+  /// that they have in common.
+  void shape_gradients(LocalIndex cell, std::span<Vec3d> gradients) const;
   /// Gives the block its shape data as it was made, and takes them back when called again.
   void exchange_shapes();
   /// The rotation R of F_p = R S as it is kept, S symmetric, of the cell in lane number `slot`: Rᵀ turns its
   /// shape data to those of S⁻¹, which points of one cell have in common.
   [[nodiscard]] Mat3d rotation(std::size_t slot, std::size_t q) const;
-  /// F_p⁻¹ of det > 0, symmetric, at point `q` of a cell.
-  [[nodiscard]] Mat3d inverse_stretch(LocalIndex cell, std::size_t q) const;
 
   [[nodiscard]] const kernels::PlasticArrays* arrays() const { return &arrays_; }
   [[nodiscard]] std::size_t memory() const;
 
  private:
+  /// Where number `number` of `numbers` a point stands.
+  [[nodiscard]] std::size_t index(std::size_t slot, std::size_t q, std::size_t number,
+                                  std::size_t numbers) const;
   [[nodiscard]] std::size_t index(std::size_t slot, std::size_t q, std::size_t number) const;
   [[nodiscard]] std::size_t slot_of(LocalIndex cell) const;
-  [[nodiscard]] Mat3d deformation(std::size_t slot, std::size_t q) const;
-  /// The mean of `value_of(q)` over a cell's volume at rest.
+  [[nodiscard]] double largest_alpha(LocalIndex cell) const;
+  [[nodiscard]] LowerTriangle<double> deformation(std::size_t slot, std::size_t q) const;
+  /// ∫ of a number over the volume at rest.
   [[nodiscard]] double sum(std::size_t number) const;
+  /// The mean of `value_of(q)` over a cell's volume at rest.
   template <class ValueOf>
   [[nodiscard]] double mean(std::size_t slot, ValueOf&& value_of) const;
   [[nodiscard]] double volume(std::size_t slot, std::size_t q) const;
+  [[nodiscard]] std::size_t goal_index(std::size_t slot, std::size_t q, std::size_t number) const;
   [[nodiscard]] Mat3d goal(std::size_t slot, std::size_t q) const;
 
   ElementBlock& block_;
@@ -89,6 +104,7 @@ class PlasticCells {
   AlignedVector<double> goal_;  // [batch][point] of goal_numbers [lane], where there is a control
   PlasticControl control_;
   AlignedVector<float> drift_, settled_largest_, settled_spin_;  // [batch][lane]
+  std::vector<double> way_from_, way_until_;                     // α where it begins, and may end, per cell
   std::vector<LocalIndex> slot_of_cell_;
   kernels::PlasticArrays arrays_;
 };

@@ -1,7 +1,9 @@
 #pragma once
+#include "evert/materials/lame.hpp"
 #include "evert/math/pack.hpp"
 #include "evert/math/vec3.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,6 +41,14 @@ struct PlasticControl {
   double from = 0;  ///< [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]; before and afterwards flow is free
 };
+
+/// The largest eigenvalue of an element at rest grows at most by this factor when log F_p goes a way of this
+/// length: with F_p⁻¹ then F_p⁻¹ (I + E), ‖E‖ ≤ s = e^way − 1, a gradient G becomes G (I + E), and 2μ‖G‖² +
+/// λ(tr G)² at most (1 + s)² (1 + sλ/2μ) times as large.
+[[nodiscard]] inline double stiffness_growth(double way, const Lame& lame) {
+  const double s = std::expm1(way);
+  return (1 + s) * (1 + s) * (1 + s * std::max(lame.lambda, 0.0) / (2 * lame.mu));
+}
 
 /// What flows from F_e into F_p in one step.
 template <class T>

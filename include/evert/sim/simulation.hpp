@@ -131,6 +131,8 @@ class Simulation {
  private:
   void apply_due_events();
   void refresh_forces();
+  /// Collective. Filters anew what has flown.
+  void follow_flow();
   /// Gives muscle the activation that it has at `time` [s], for the forces to be computed next.
   void activate(double time);
   /// Gives it the highest that it will have from now to `until` [s], for a bound.

@@ -2,6 +2,7 @@
 #include "evert/mesh/generators.hpp"
 #include "evert/mesh/quality.hpp"
 #include "evert/mesh/repair.hpp"
+#include "evert/mesh/round_bar.hpp"
 #include "evert/shapes/figure.hpp"
 #include "evert/shapes/gear.hpp"
 #include "evert/shapes/solids.hpp"
@@ -162,6 +163,31 @@ double thinnest_side(const ImplicitSurface& shape) {
 }
 
 /// The bound that issue 2 asks for is 8 degrees; the method promises 9 whatever the shape.
+TEST(RoundBar, is_the_same_body_of_hexahedra_and_of_tetrahedra) {
+  for (const double inner_radius : {0.0, 0.4}) {
+    RoundBar bar{
+        .radius = 1, .length = 3, .inner_radius = inner_radius, .quarter = 3, .rings = 2, .layers = 4};
+    const auto hexes = generate_round_bar(bar);
+    bar.cell = RoundBarCells::tet6;
+    const auto tets = generate_round_bar(bar);
+    EXPECT_EQ(hexes.cells[0].type, CellType::hex8);
+    EXPECT_EQ(tets.cells[0].type, CellType::tet4);
+    EXPECT_EQ(tets.cell_count(), 6 * hexes.cell_count());
+    for (const auto* mesh : {&hexes, &tets}) {
+      EXPECT_NO_THROW(require_positive_volumes(*mesh, "bar"));
+      const auto quality = measure_quality(*mesh);
+      // A polygon of twelve corners around, and within.
+      const double area = 6 * std::sin(std::numbers::pi / 6) * (1 - inner_radius * inner_radius);
+      EXPECT_NEAR(quality.total_volume, 3 * area, 1e-12);
+      EXPECT_EQ(quality.components, 1);
+      EXPECT_EQ(quality.duplicate_nodes, 0);
+    }
+    // Neighbours agree about the diagonals of their faces.
+    EXPECT_EQ(boundary_faces(tets).size(), 2 * boundary_faces(hexes).size());
+    EXPECT_EQ(node_set(tets, "surface").nodes, node_set(hexes, "surface").nodes);
+  }
+}
+
 TEST(Stuffing, keeps_every_dihedral_angle_above_9_degrees) {
   for (const auto& [name, shape, volume, handles] : shapes()) {
     const double thinnest = thinnest_side(*shape);

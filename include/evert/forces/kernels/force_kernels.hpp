@@ -30,12 +30,10 @@ EVERT_STAGE void mean_dilatation_stage(const Model& model, const BlockArrays& bl
   std::size_t first = 0;
   for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
     const CellBatch<T, element> batch(block, b);
-    const T mean = mean_dilatation<T, element>(model, batch, run, first);
-    for (std::size_t q = 0; q < element.points; ++q) {
-      const auto here = model.dilatation(principal_stretches(run.plane[first + q]));
+    const auto [at, mean] = cell_dilatation<T, element>(model, batch, run, first);
+    for (std::size_t q = 0; q < element.points; ++q)
       run.principal[first + q] +=
-          (-batch.volume(q) * T(model.lame.lambda) * (mean - here.value)) * here.slope;
-    }
+          (-batch.volume(q) * T(model.lame.lambda) * (mean - at[q].value)) * at[q].slope;
   }
 }
 

@@ -45,16 +45,27 @@ EVERT_ALWAYS_INLINE T energy_density(const Model& model, const BlockArrays& bloc
   }
 }
 
-/// Over the volume of a cell whose points begin at `first` of a run.
+/// The dilatations of a cell.
+template <Real T, const auto& element>
+struct CellDilatation {
+  std::array<Dilatation<T>, element.points> at;
+  T mean;  ///< over its volume
+};
+
+/// Of the cell whose points begin at `first` of a run.
 template <Real T, const auto& element, HasDilatation Model>
-EVERT_ALWAYS_INLINE T mean_dilatation(const Model& model, const CellBatch<T, element>& batch,
-                                      const PointRun<T>& run, std::size_t first) {
+EVERT_ALWAYS_INLINE CellDilatation<T, element> cell_dilatation(const Model& model,
+                                                               const CellBatch<T, element>& batch,
+                                                               const PointRun<T>& run, std::size_t first) {
+  CellDilatation<T, element> of_cell;
   T sum = T(0.0), volume = T(std::numeric_limits<scalar_t<T>>::min());  // 0 in padding lanes
   for (std::size_t q = 0; q < element.points; ++q) {
-    sum += batch.volume(q) * model.dilatation(principal_stretches(run.plane[first + q])).value;
+    of_cell.at[q] = model.dilatation(principal_stretches(run.plane[first + q]));
+    sum += batch.volume(q) * of_cell.at[q].value;
     volume += batch.volume(q);
   }
-  return sum / volume;
+  of_cell.mean = sum / volume;
+  return of_cell;
 }
 
 /// What the mean dilatation changes of the energy of the cells of a run [J].
@@ -65,11 +76,9 @@ EVERT_ALWAYS_INLINE T energy_of_mean_dilatation(const Model& model, const BlockA
   std::size_t first = 0;
   for (LocalIndex b = batches.begin; b < batches.end; ++b, first += element.points) {
     const CellBatch<T, element> batch(block, b);
-    const T mean = mean_dilatation<T, element>(model, batch, run, first);
-    for (std::size_t q = 0; q < element.points; ++q) {
-      const T here = model.dilatation(principal_stretches(run.plane[first + q])).value;
-      change += T(0.5 * model.lame.lambda) * batch.volume(q) * (mean * mean - here * here);
-    }
+    const auto [at, mean] = cell_dilatation<T, element>(model, batch, run, first);
+    for (std::size_t q = 0; q < element.points; ++q)
+      change += T(0.5 * model.lame.lambda) * batch.volume(q) * (mean * mean - at[q].value * at[q].value);
   }
   return change;
 }

@@ -68,8 +68,8 @@ struct FlowRun {
 
   PerPoint<Vec3<T>> log_growth;
   PerPoint<T> amount;                        ///< Δα; 0 where nothing flows
-  PerPoint<Mat3<T>> trial_strain;            ///< log V of the trial state
-  PerPoint<T> trial_energy;                  ///< ψ of the trial state
+  PerPoint<Mat3<T>> trial_strain;            ///< log V of the trial state, unless a control attracts
+  PerPoint<T> trial_energy;                  ///< ψ of it, where one does
   PerPoint<LowerTriangle<T>> before, after;  ///< F_p
 };
 
@@ -166,13 +166,16 @@ EVERT_ALWAYS_INLINE Mat3<T> spatial_log_strain(const PointRun<T>& run, std::size
                         {log(max(sigma[0], floor)), log(max(sigma[1], floor)), log(max(sigma[2], floor))});
 }
 
+template <Real T>
+EVERT_STAGE void trial_strain_stage(const PointRun<T>& run, std::size_t points, FlowRun<T>& flowing) {
+  for (std::size_t i = 0; i < points; ++i) flowing.trial_strain[i] = spatial_log_strain(run, i);
+}
+
 template <Real T, class Model>
-EVERT_STAGE void trial_stage(const Model& model, const PointRun<T>& run, std::size_t points,
-                             FlowRun<T>& flowing) {
-  for (std::size_t i = 0; i < points; ++i) {
-    flowing.trial_strain[i] = spatial_log_strain(run, i);
+EVERT_STAGE void trial_energy_stage(const Model& model, const PointRun<T>& run, std::size_t points,
+                                    FlowRun<T>& flowing) {
+  for (std::size_t i = 0; i < points; ++i)
     flowing.trial_energy[i] = model.energy(principal_stretches(run.plane[i]));
-  }
 }
 
 /// log S of F_p = R S.
@@ -310,7 +313,10 @@ EVERT_ALWAYS_INLINE void flow(const Model& model, const BlockArrays& block, cons
   if (!attracts && !may_yield<T, element>(plastic, batches, run, points)) return;
   FlowRun<T> flowing;
   if (!yield_stage<T, element>(plastic, batches, run, points, flowing) && !attracts) return;
-  trial_stage(model, run, points, flowing);
+  if (attracts)
+    trial_energy_stage(model, run, points, flowing);
+  else
+    trial_strain_stage(run, points, flowing);
   plastic_deformation_stage<T, element>(plastic, batches, run, points, flowing);
   if (plastic.goal != nullptr) control_stage<T, element>(plastic, batches, points, flowing);
   const auto deform = [&] {
