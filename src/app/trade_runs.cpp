@@ -4,6 +4,7 @@
 #include "evert/core/collective.hpp"
 #include "evert/core/error.hpp"
 #include "evert/core/formatted.hpp"
+#include "evert/core/memory_in_use.hpp"
 #include "evert/core/petsc.hpp"
 #include "evert/core/version.hpp"
 #include "evert/scene/petsc_options.hpp"
@@ -14,7 +15,6 @@
 #include <array>
 #include <ctime>
 #include <filesystem>
-#include <malloc.h>
 #include <utility>
 
 namespace evert {
@@ -43,12 +43,6 @@ class OptionsOfScene {
  private:
   std::vector<std::string> ours_;
 };
-
-/// Bytes that this process has taken from its heap.
-double heap_in_use() {
-  const auto info = mallinfo2();
-  return static_cast<double>(info.uordblks + info.hblkhd);
-}
 
 double bytes_of(const trade::Measurement& m) {
   return static_cast<double>(sizeof(double) *
@@ -196,7 +190,7 @@ std::optional<RunRecord> TradeRuns::simulate(const trade::Overrides& overrides) 
   ++made_;
   const auto scene = source_.variant(overrides);
   const OptionsOfScene options(scene);
-  const double heap_before = heap_in_use();
+  const auto heap_before = static_cast<double>(memory_in_use());
   BuiltScene built;
   try {
     built = build_scene(comm_, scene);
@@ -231,7 +225,8 @@ std::optional<RunRecord> TradeRuns::run_built(BuiltScene& built, double heap_bef
   record.nodes = static_cast<double>(simulation.mesh().total_nodes);
   if (record.fate == Fate::finished) record.measured = observer.sampler().collect();
   observers.clear();
-  record.memory = sum(comm_, std::max(0.0, heap_in_use() - heap_before - bytes_of(record.measured)));
+  record.memory = sum(
+      comm_, std::max(0.0, static_cast<double>(memory_in_use()) - heap_before - bytes_of(record.measured)));
   return record;
 }
 
