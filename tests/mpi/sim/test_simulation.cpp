@@ -74,6 +74,64 @@ TEST(Simulation, StopsWhereTheStepIsLostInTheTime) {
   }
 }
 
+/// Steps until it fails, at most `most`.
+std::string error_of_steps(Simulation& simulation, double dt, int most) {
+  return simulation_error_of([&] {
+    for (int step = 0; step < most; ++step) simulation.step(dt);
+  });
+}
+
+/// The same on every rank as on the first.
+bool is_on_all_ranks(std::string text) {
+  const auto own = text;
+  auto size = static_cast<int>(text.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  text.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(text.data(), size, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  int same = text == own ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+  return same != 0;
+}
+
+TEST(Simulation, StopsStepsAboveTheBoundLongBeforeAnythingOverflows) {
+  const auto auto_step = test::build(scene, {"integrator.time_step=auto"}).simulation->suggested_time_step();
+  for (const std::string method : {"newmark", "verlet", "symplectic_euler"})
+    for (const double factor : {2.0, 5.0}) {
+      const auto built = test::build(scene, {"integrator.method=" + method, "bodies.cube.spin=[1, 2, 3]"});
+      auto& simulation = *built.simulation;
+      const auto error = error_of_steps(simulation, factor * auto_step, 100);
+      for (const char* part : {"the motion has blown up: velocities turned round in each of the last",
+                               "first to look at is node", "of element", "of 'cube' on rank",
+                               "times the longest that is stable at rest, because of element",
+                               "a well-shaped tetrahedron", "try an integrator.time_step of"})
+        EXPECT_NE(error.find(part), std::string::npos)
+            << method << ": says nothing of '" << part << "': " << error;
+      EXPECT_TRUE(is_on_all_ranks(error));
+      double fastest = 0;
+      for (const double v : simulation.velocities().owned()) fastest = std::max(fastest, std::abs(v));
+      EXPECT_LT(fastest, 1e6) << "m/s: far below what a float could hold";
+    }
+}
+
+TEST(Simulation, SuspectsWhatBeginsToExplodeAndNothingElse) {
+  const auto built = test::build(scene, {"integrator.method=verlet", "bodies.cube.spin=[1, 2, 3]"});
+  auto& simulation = *built.simulation;
+  for (int step = 0; step < 200; ++step) {
+    simulation.step(1e-3);
+    EXPECT_FALSE(simulation.suspicious()) << step;
+  }
+  int suspicious = 0;
+  const auto dt = 1.3 * test::build(scene, {"integrator.time_step=auto"}).simulation->suggested_time_step();
+  const auto error = simulation_error_of([&] {
+    for (int step = 0; step < 300; ++step) {
+      simulation.step(dt);
+      suspicious += simulation.suspicious() ? 1 : 0;
+    }
+  });
+  EXPECT_NE(error, "");
+  EXPECT_GT(suspicious, 0);
+}
+
 /// A definition made by hand, which no scene has checked.
 TEST(Simulation, RefusesConsistentMassesWithContactOrAtRest) {
   const auto made_with = [](const std::function<void(SimulationDefinition&)>& change) {
