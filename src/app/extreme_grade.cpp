@@ -37,7 +37,7 @@ Verdict graded(const TrialEnd& end) {
   if (end.timed_out) return {Grade::defect, "does not end within the time limit"};
   if (!end.finite) return {Grade::defect, "ends with something that is not finite"};
   if (end.inverted_points == 0 && end.shape_error <= recovered_within) return {Grade::recovered, ""};
-  if (!(end.energy_gain <= energy_within))
+  if (!(end.energy_gain <= end.stable_gain))
     return {Grade::defect, formatted("gained %.3g of its energy", end.energy_gain)};
   return {Grade::stable, formatted("%lld points inverted, %.2g of its size from the rest shape",
                                    end.inverted_points, end.shape_error)};

@@ -27,6 +27,7 @@ class TrialObserver final : public Observer {
       : extreme_(extreme), deadline_(deadline) {
     const auto size = body.upper - body.lower;
     size_ = std::max({size[0], size[1], size[2]});
+    end.stable_gain = extreme.energy_gain;
   }
 
   void observe(Simulation& simulation, const StepReport& /*report*/) override {
@@ -155,7 +156,7 @@ bool keeps(Promise promise, const Trial& trial) {
     case Promise::stability:
       return trial.grade == Grade::recovered || trial.grade == Grade::stable;
     case Promise::detection:
-      return trial.grade == Grade::failed && trial.suggested.has_value();
+      return trial.grade == Grade::failed && trial.suggestion_works;
     case Promise::any:
       break;
   }
@@ -175,15 +176,15 @@ Trial try_case(MPI_Comm comm, const ExtremeCase& extreme, const std::string& dir
   const double begin = MPI_Wtime();
   const auto path = write_files(comm, extreme, directory);
   auto trial = run_with_step(comm, extreme, path, time_step_of(comm, extreme, path), begin + time_limit);
-  if (trial.grade == Grade::failed) trial.suggested = suggested_step(trial.note);
-  trial.kept = keeps(extreme.promise, trial);
-  if (extreme.promise == Promise::detection && trial.kept) {
-    const auto again = run_with_step(comm, extreme, path, *trial.suggested, begin + time_limit);
-    if (again.grade != Grade::stable && again.grade != Grade::recovered) {
-      trial.kept = false;
-      trial.note += "; BUT with that step: " + again.note;
+  if (trial.grade == Grade::failed && extreme.step_over_limit) {
+    trial.suggested = suggested_step(trial.note);
+    if (trial.suggested) {
+      const auto again = run_with_step(comm, extreme, path, *trial.suggested, begin + time_limit);
+      trial.suggestion_works = again.grade == Grade::stable || again.grade == Grade::recovered;
+      if (!trial.suggestion_works) trial.note += "; with that step: " + again.note;
     }
   }
+  trial.kept = keeps(extreme.promise, trial);
   trial.seconds = MPI_Wtime() - begin;
   return trial;
 }

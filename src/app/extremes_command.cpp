@@ -147,7 +147,10 @@ int extremes_command(MPI_Comm comm, std::span<const std::string> arguments, std:
 
   const auto tried = try_all(comm, cases, time_limit, options.has("quiet"), out);
 
-  if (root) write_totals(tried, out);
+  if (root) {
+    write_totals(tried, out);
+    out.flush();
+  }
   if (options.has("out"))
     on_root(comm, [&] {
       std::ostringstream text;

@@ -25,12 +25,12 @@ Totals totals_of(const std::vector<TriedCase>& all) {
     totals.kept += trial.kept ? 1 : 0;
     totals.let_through += trial.let_through ? 1 : 0;
     totals.seconds += trial.seconds;
-    if (extreme.promise != Promise::detection) continue;
+    if (extreme.step_over_limit.value_or(0) <= 1) continue;
     ++totals.over_limit;
-    if (trial.grade != Grade::failed) continue;
+    if (!trial.suggested) continue;
     ++totals.caught;
     totals.caught_in_time += trial.let_through ? 0 : 1;
-    totals.step_works += trial.kept ? 1 : 0;
+    totals.step_works += trial.suggestion_works ? 1 : 0;
     totals.latest = std::max(totals.latest, trial.steps);
   }
   return totals;
@@ -87,7 +87,7 @@ class Footnotes {
 std::string cell_of(const TriedCase& tried, Footnotes& notes) {
   const auto& [extreme, trial] = tried;
   std::string text = name_of(trial.grade);
-  if (extreme.promise == Promise::detection && trial.grade == Grade::failed)
+  if (extreme.step_over_limit && trial.suggested)
     text = formatted("detected, %lld", static_cast<long long>(trial.steps));
   else if (trial.grade == Grade::failed || trial.grade == Grade::defect)
     text += formatted(" (%zu)", notes.number_of(trial.note));

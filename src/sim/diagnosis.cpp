@@ -114,14 +114,17 @@ std::string too_long(System& system, double stable, const ModalFilter* filter, c
 
 }  // namespace
 
-std::string what_happened(const System& system, const Soundness::Findings& found, const GrowthWatch& watch) {
+std::string what_happened(const System& system, const Soundness::Findings& found,
+                          const Soundness& soundness) {
   if (found.ailment == Ailment::unsound_rigid_body)
     return "the motion of '" + system.collisions.obstacles()[found.obstacle]->name() + "' has blown up";
   const auto worst = worst_node(system);
   std::string text = "the motion has blown up";
   if (found.ailment == Ailment::explosion)
     text += formatted(": velocities turned round in each of the last %d steps and grew %.2g times",
-                      watch.turns(), std::sqrt(watch.growth()));
+                      soundness.watch().turns(), std::sqrt(soundness.watch().growth()));
+  else if (found.ailment == Ailment::energy)
+    text += formatted(": its energy grew %.2g times, and nothing does work", soundness.energy().growth());
   else
     text += formatted(", %lld of %lld nodes are faster than light or not finite",
                       static_cast<long long>(found.unsound_nodes),

@@ -15,7 +15,7 @@ struct BrokenStep {
 
 /// Collective. "the motion has blown up ..., node 17 of element 40 of 'ball' ...".
 [[nodiscard]] std::string what_happened(const System& system, const Soundness::Findings& found,
-                                        const GrowthWatch& watch);
+                                        const Soundness& soundness);
 
 /// Collective. "; the step of 0.2 s is 12 times the longest ...: try an integrator.time_step of ...", where
 /// that is so, else "". What is stable is asked at rest: `system` is left there.

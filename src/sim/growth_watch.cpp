@@ -1,5 +1,7 @@
 #include "evert/sim/growth_watch.hpp"
 
+#include <algorithm>
+
 namespace evert {
 
 GrowthWatch::Sums GrowthWatch::look(std::span<const double> masses, std::span<const double> velocities) {
@@ -20,12 +22,14 @@ GrowthWatch::Sums GrowthWatch::look(std::span<const double> masses, std::span<co
 }
 
 void GrowthWatch::judge(const Sums& all) {
-  // The first turn tells nothing: the velocity before may have been next to nothing by chance.
   if (all.turned < 0 && all.square > square_) {
-    if (turns_++ > 0) growth_ *= all.square / square_;
+    // The first turn tells nothing: the velocity before may have been next to nothing by chance.
+    if (turns_++ > 0) {
+      growth_ *= all.square / square_;
+      largest_ = std::max(largest_, all.square / square_);
+    }
   } else {
-    turns_ = 0;
-    growth_ = 1;
+    forget();
   }
   square_ = all.square;
 }

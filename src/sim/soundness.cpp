@@ -61,7 +61,7 @@ std::array<std::size_t, 2> cell_with(const DistributedMesh& mesh, LocalIndex nod
 
 }  // namespace
 
-Soundness::Findings Soundness::look(const System& system, bool stop_requested) {
+Soundness::Findings Soundness::look(const System& system, double dt, bool stop_requested) {
   const auto x = system.x.owned();
   const auto v = system.v.owned();
   const auto part = watch_.look(system.mass_row_sums(), v);
@@ -83,7 +83,10 @@ Soundness::Findings Soundness::look(const System& system, bool stop_requested) {
     return found;
   }
   watch_.judge({sums[2], sums[3]});
-  if (watch_.exploding()) found.ailment = Ailment::explosion;
+  if (watch_.exploding())
+    found.ailment = Ailment::explosion;
+  else if (energy_.has_grown(system, dt))
+    found.ailment = Ailment::energy;
   return found;
 }
 

@@ -28,6 +28,7 @@ struct Trial {
   // Of a case with a step over the limit:
   double time_step = 0;               ///< [s]
   std::optional<double> suggested{};  ///< [s] that the message recommends
+  bool suggestion_works = false;      ///< with it the same case is stable
 };
 
 /// What a run ended with, from which the grade follows.
@@ -36,12 +37,12 @@ struct TrialEnd {
   bool timed_out = false;
   bool finite = true;
   long long inverted_points = 0;
-  double shape_error = 0;  ///< RMS distance to the rest shape over the size
-  double energy_gain = 0;  ///< most that it ever had more than at the start, over the scale of its energies
+  double shape_error = 0;    ///< RMS distance to the rest shape over the size
+  double stable_gain = 0.2;  ///< ExtremeCase::energy_gain
+  double energy_gain = 0;    ///< most that it ever had more than at the start, over the scale of its energies
 };
 
 inline constexpr double recovered_within = 1e-6;  ///< shape error over the size, docs/recovery.md
-inline constexpr double energy_within = 0.2;  ///< gain over the scale: what steps of 0.99 of the limit ripple
 
 /// The grade, and what is wrong with a defect.
 struct Verdict {

@@ -1,5 +1,6 @@
 #pragma once
 #include "evert/integrators/system.hpp"
+#include "evert/sim/energy_watch.hpp"
 #include "evert/sim/growth_watch.hpp"
 
 #include <string>
@@ -7,12 +8,14 @@
 namespace evert {
 
 /// What is the matter with a state.
-enum class Ailment { none, unsound_nodes, unsound_rigid_body, explosion };
+enum class Ailment { none, unsound_nodes, unsound_rigid_body, explosion, energy };
 
-/// Looks at the state after every step: one pass over the nodes and one reduction, no memory.
+/// Looks at the state after every step: one pass over the nodes and one reduction, and no memory is taken.
 class Soundness {
  public:
-  explicit Soundness(const DistributedMesh& mesh) : watch_(static_cast<std::size_t>(mesh.owned_nodes)) {}
+  /// `closed` as in EnergyWatch.
+  Soundness(const DistributedMesh& mesh, bool closed)
+      : watch_(static_cast<std::size_t>(mesh.owned_nodes)), energy_(closed) {}
 
   struct Findings {
     Ailment ailment = Ailment::none;
@@ -21,14 +24,19 @@ class Soundness {
     bool stop = false;         ///< some rank wants to stop
   };
 
-  /// Collective. The same on every rank.
-  [[nodiscard]] Findings look(const System& system, bool stop_requested);
-  /// The state was replaced.
-  void forget() { watch_.forget(); }
+  /// Collective. After a step of `dt` [s], or 0 at a start. The same on every rank.
+  [[nodiscard]] Findings look(const System& system, double dt, bool stop_requested);
+  /// The state, or what it is made of, was replaced.
+  void forget() {
+    watch_.forget();
+    energy_.forget();
+  }
   [[nodiscard]] const GrowthWatch& watch() const { return watch_; }
+  [[nodiscard]] const EnergyWatch& energy() const { return energy_; }
 
  private:
   GrowthWatch watch_;
+  EnergyWatch energy_;
 };
 
 /// Where it is worst: the node that is not finite, else the fastest.
