@@ -20,7 +20,7 @@ constexpr std::array<Setting, 5> filters{
 constexpr std::array<Setting, 5> methods{
     {{"newmark", "integrator: {method: newmark}"},
      {"verlet", "integrator: {method: verlet}"},
-     {"symplectic_euler", "integrator: {method: symplectic_euler}"},
+     {"symplectic_euler", "integrator: {method: symplectic_euler, safety: 0.5}"},
      {"explicit_euler", "integrator: {method: explicit_euler, time_step: 5e-4}"},
      {"quasistatic",
       "integrator: {method: quasistatic}\nconstraints:\n  - {body: body, node_set: x_min, fixed: true}"}}};

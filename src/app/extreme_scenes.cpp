@@ -52,20 +52,23 @@ std::string scene_of(const SceneParts& parts) {
 }
 
 SceneParts settling_from(const std::string& start, SceneParts parts, const Settling& settling) {
-  const double unit = settling.time;
-  parts.end_time = 9 * settling.longer * unit;
+  constexpr double recoil = 1e-5, cooling = 1e-4,
+                   resting = 0.02;  // [s] stiffness-proportional, of a time of 1
+  const double unit = settling.time, begin = settling.contract;
+  parts.end_time = (begin + 9 * settling.longer) * unit;
   parts.body.push_back("start: " + start);
-  parts.body.push_back(formatted(
-      "damping: {model: objective, stiffness_proportional: %.17g, mass_proportional: 0}", 1e-5 * unit));
+  parts.body.push_back(formatted("damping: {model: %s, stiffness_proportional: %.17g, mass_proportional: 0}",
+                                 begin > 0 ? "rotated" : "objective", (begin > 0 ? resting : recoil) * unit));
   parts.world.emplace_back("integrator: {max_strain_increment: 0.05}");
   parts.world.emplace_back("events:");
   const auto event = [&](double at, const char* what, double to) {
     parts.world.push_back(
         formatted("  - {at: %.17g, set: bodies.body.damping.%s, to: %.17g}", at * unit, what, to));
   };
-  event(2, "stiffness_proportional", 1e-4 * unit);
-  event(4, "stiffness_proportional", 0.02 * unit);
-  if (settling.spin > 0) event(4, "mass_proportional", settling.spin / unit);
+  if (begin > 0) event(begin, "stiffness_proportional", recoil * unit);
+  event(begin + 2, "stiffness_proportional", cooling * unit);
+  event(begin + 4, "stiffness_proportional", resting * unit);
+  if (settling.spin > 0) event(begin + 4, "mass_proportional", settling.spin / unit);
   return parts;
 }
 

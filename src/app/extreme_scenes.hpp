@@ -22,9 +22,10 @@ struct SceneParts {
 
 /// How a body comes to rest from a bad start: it untangles by the recoil, cools, and stops. docs/recovery.md
 struct Settling {
-  double time = 1;    ///< [s] a length over the speed of sound, over that of a body of 1 m and 10 m/s
-  double spin = 0;    ///< [1/s] damping of velocities at the end, times `time`
-  double longer = 1;  ///< than 9 of these times
+  double time = 1;      ///< [s] a length over the speed of sound, over that of a body of 1 m and 10 m/s
+  double spin = 0;      ///< [1/s] damping of velocities at the end, times `time`
+  double longer = 1;    ///< than 9 of these times
+  double contract = 0;  ///< in these times: strong damping first, where nodes are many times the size apart
 };
 /// The same scene with start, damping, events and steps for that.
 [[nodiscard]] SceneParts settling_from(const std::string& start, SceneParts parts,

@@ -60,15 +60,20 @@ void add_filtered(std::vector<ExtremeCase>& cases) {
     }
 }
 
+/// Stresses of st_venant_kirchhoff grow with the cube of the stretch: a thousand times the size they are
+/// faster than light.
 void add_far_scrambles(std::vector<ExtremeCase>& cases) {
+  constexpr double far = 1000;
   for (const char* model : {"neo_hookean", "st_venant_kirchhoff", "rotated_linear"})
-    for (const double size : {1.0, 10.0, 1000.0})
+    for (const double size : {1.0, 10.0, 100.0, far}) {
+      const bool flies = size == far && std::string(model) == "st_venant_kirchhoff";
       cases.push_back({.family = "scrambles by size",
                        .row = model,
                        .column = short_number(size) + " x",
                        .scene = scene_of(settling_from(start_of("scramble", size), ball_of(model_of(model)),
-                                                       {.spin = 3, .longer = 1.3})),
-                       .promise = Promise::recovery});
+                                                       {.spin = 3, .longer = 1.3, .contract = 1})),
+                       .promise = flies ? Promise::any : Promise::recovery});
+    }
 }
 
 void add_single(std::vector<ExtremeCase>& cases, int ranks) {

@@ -48,10 +48,12 @@ TEST(ExtremeCases, AreThreeHundredWithNamesOfTheirOwn) {
   }
 }
 
+/// All but combinations, of which some are refused.
 TEST(ExtremeCases, AreScenes) {
   for (const auto& one : extreme_cases(2))
-    EXPECT_NO_THROW(static_cast<void>(parse_scene(one.scene, "scene.yaml"))) << one.name() << '\n'
-                                                                             << one.scene;
+    if (!one.family.starts_with("everything"))
+      EXPECT_NO_THROW(static_cast<void>(parse_scene(one.scene, "scene.yaml"))) << one.name() << '\n'
+                                                                               << one.scene;
 }
 
 TEST(ExtremeCases, PromiseWhatThePhysicsPromises) {
@@ -65,9 +67,9 @@ TEST(ExtremeCases, PromiseWhatThePhysicsPromises) {
     EXPECT_EQ(promised(std::string("starts_with_a_filter/compliant/") + start), Promise::recovery);
   }
   EXPECT_EQ(promised("scrambles_by_size/neo_hookean/1000_x"), Promise::recovery);
-  EXPECT_EQ(promised("step_over_the_limit_by_material/neo_hookean/1.01_x"), Promise::any)
+  EXPECT_EQ(promised("step_over_the_limit_by_material/neo_hookean/1.05_x"), Promise::any)
       << "row before column";
-  EXPECT_EQ(promised("step_over_the_limit_by_material/1.01_x/neo_hookean"), Promise::detection);
+  EXPECT_EQ(promised("step_over_the_limit_by_material/1.05_x/neo_hookean"), Promise::detection);
 }
 
 }  // namespace
