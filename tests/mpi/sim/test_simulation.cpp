@@ -93,13 +93,19 @@ bool is_on_all_ranks(std::string text) {
   return same != 0;
 }
 
+const std::string rings = "bodies.cube.start={kind: scramble, amplitude: 1e-3}";
+
+double auto_step() {
+  return test::build(scene, {"integrator.time_step=auto", rings}).simulation->suggested_time_step();
+}
+
 TEST(Simulation, StopsStepsAboveTheBoundLongBeforeAnythingOverflows) {
-  const auto auto_step = test::build(scene, {"integrator.time_step=auto"}).simulation->suggested_time_step();
+  const double dt = auto_step();
   for (const std::string method : {"newmark", "verlet", "symplectic_euler"})
-    for (const double factor : {2.0, 5.0}) {
-      const auto built = test::build(scene, {"integrator.method=" + method, "bodies.cube.spin=[1, 2, 3]"});
+    for (const double factor : {3.0, 5.0}) {
+      const auto built = test::build(scene, {"integrator.method=" + method, rings});
       auto& simulation = *built.simulation;
-      const auto error = error_of_steps(simulation, factor * auto_step, 100);
+      const auto error = error_of_steps(simulation, factor * dt, 100);
       for (const char* part : {"the motion has blown up: velocities turned round in each of the last",
                                "first to look at is node", "of element", "of 'cube' on rank",
                                "times the longest that is stable at rest, because of element",
@@ -107,23 +113,39 @@ TEST(Simulation, StopsStepsAboveTheBoundLongBeforeAnythingOverflows) {
         EXPECT_NE(error.find(part), std::string::npos)
             << method << ": says nothing of '" << part << "': " << error;
       EXPECT_TRUE(is_on_all_ranks(error));
-      double fastest = 0;
-      for (const double v : simulation.velocities().owned()) fastest = std::max(fastest, std::abs(v));
-      EXPECT_LT(fastest, 1e6) << "m/s: far below what a float could hold";
+      EXPECT_LT(simulation.steps(), 20);
     }
 }
 
+TEST(Simulation, StopsEnergyFromNowhere) {
+  // A spin that is symmetric stirs the fastest vibrations by rounding only; others grow first, and do not
+  // turn round.
+  const auto built = test::build(scene, {"bodies.cube.spin=[1, 2, 3]"});
+  const auto error = error_of_steps(*built.simulation, 2 * auto_step(), 200);
+  EXPECT_NE(error.find("the motion has blown up"), std::string::npos) << error;
+  EXPECT_NE(error.find("try an integrator.time_step of"), std::string::npos) << error;
+  EXPECT_EQ(built.simulation->steps() % EnergyWatch::interval, 0) << error;
+}
+
+TEST(Simulation, LetsBodiesFallWithoutEnd) {
+  for (const char* velocity : {"[0, 0, 0]", "[0, 0.1, 0]"}) {
+    const auto built =
+        test::build(scene, {"gravity=[0, -1e6, 0]", std::string("bodies.cube.velocity=") + velocity});
+    EXPECT_EQ(error_of_steps(*built.simulation, 1e-3, 500), "");
+  }
+}
+
 TEST(Simulation, SuspectsWhatBeginsToExplodeAndNothingElse) {
-  const auto built = test::build(scene, {"integrator.method=verlet", "bodies.cube.spin=[1, 2, 3]"});
+  const auto built = test::build(scene, {"integrator.method=verlet", rings});
   auto& simulation = *built.simulation;
   for (int step = 0; step < 200; ++step) {
     simulation.step(1e-3);
     EXPECT_FALSE(simulation.suspicious()) << step;
   }
   int suspicious = 0;
-  const auto dt = 1.3 * test::build(scene, {"integrator.time_step=auto"}).simulation->suggested_time_step();
+  const double dt = 2 * auto_step();
   const auto error = simulation_error_of([&] {
-    for (int step = 0; step < 300; ++step) {
+    for (int step = 0; step < 100; ++step) {
       simulation.step(dt);
       suspicious += simulation.suspicious() ? 1 : 0;
     }

@@ -50,10 +50,11 @@ TEST(ExtremeCases, AreThreeHundredWithNamesOfTheirOwn) {
 
 /// All but combinations, of which some are refused.
 TEST(ExtremeCases, AreScenes) {
-  for (const auto& one : extreme_cases(2))
-    if (!one.family.starts_with("everything"))
-      EXPECT_NO_THROW(static_cast<void>(parse_scene(one.scene, "scene.yaml"))) << one.name() << '\n'
-                                                                               << one.scene;
+  for (const auto& one : extreme_cases(2)) {
+    if (one.family.starts_with("everything")) continue;
+    EXPECT_NO_THROW(static_cast<void>(parse_scene(one.scene, "scene.yaml"))) << one.name() << '\n'
+                                                                             << one.scene;
+  }
 }
 
 TEST(ExtremeCases, PromiseWhatThePhysicsPromises) {
