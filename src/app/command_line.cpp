@@ -125,6 +125,7 @@ std::string usage() {
   evert mesh COMMAND ...     generate, convert, judge or partition a mesh
   evert material MODEL ...   print or draw the stress of a material, and check it against another code
   evert bench COMMAND ...    measure kernels and steps on this machine
+  evert extremes [NAME]      run scenes as bad as they can be, and grade what comes out
   evert COMMAND --help       the options of a command
   evert --version
 

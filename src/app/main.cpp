@@ -3,6 +3,7 @@
 #include "evert/app/check_command.hpp"
 #include "evert/app/command_line.hpp"
 #include "evert/app/explain_command.hpp"
+#include "evert/app/extremes_command.hpp"
 #include "evert/app/material_command.hpp"
 #include "evert/app/mesh_command.hpp"
 #include "evert/app/run_command.hpp"
@@ -65,9 +66,10 @@ int dispatch(const std::string& command, const Arguments& arguments) {
   if (command == "tune")
     return evert::tune_command(MPI_COMM_WORLD, evert::parse_trade_arguments(arguments, command), std::cout);
   if (command == "bench") return evert::bench_command(MPI_COMM_WORLD, arguments, std::cout);
+  if (command == "extremes") return evert::extremes_command(MPI_COMM_WORLD, arguments, std::cout);
   if (const auto found = serial.find(command); found != serial.end())
     return on_rank_zero(found->second, arguments);
-  std::vector<std::string> names{"run", "stability", "trade", "tune", "bench"};
+  std::vector<std::string> names{"run", "stability", "trade", "tune", "bench", "extremes"};
   for (const auto& [name, function] : serial) names.push_back(name);
   throw evert::UserError("there is no command '" + command + "': must be " + evert::list_of(names) +
                          evert::did_you_mean(command, names));

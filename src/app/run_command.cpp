@@ -197,6 +197,19 @@ void print_outcome(const RunSummary& summary, const RunFiles& files) {
   if (summary.frames > 0) std::printf("  to see it   evert view %s\n", files("run.h5").c_str());
 }
 
+/// What fails, fails with where to go on from.
+RunEnd run_steps(Simulation& simulation, double end_time, const Observers& observers,
+                 const RunArguments& arguments, const std::string& checkpoint) {
+  try {
+    return run_loop(simulation, end_time, observers.all);
+  } catch (const SimulationError& error) {
+    const double kept = observers.checkpoints->written_at();
+    if (kept < 0) throw;
+    throw SimulationError(error.what() + formatted("; the checkpoint of t = %.6g s is kept: ", kept) +
+                          restart_command(arguments, checkpoint));
+  }
+}
+
 int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) {
   const double begin = MPI_Wtime();
   const RunFiles files{arguments.output.empty() ? scene.output.directory : arguments.output};
@@ -214,7 +227,7 @@ int run(MPI_Comm comm, const SceneConfig& scene, const RunArguments& arguments) 
   }
   auto observers = make_observers(scene, simulation, files, arguments);
 
-  const auto end = run_loop(simulation, scene.end_time, observers.all);
+  const auto end = run_steps(simulation, scene.end_time, observers, arguments, files("checkpoint.h5"));
 
   if (end == RunEnd::interrupted) observers.checkpoints->write(simulation);
   auto summary = summarize(scene, built, observers, end);

@@ -93,7 +93,9 @@ bool CheckpointObserver::due(const Simulation& simulation) const {
 }
 
 void CheckpointObserver::observe(Simulation& simulation, const StepReport& report) {
-  if (report.dt > 0 && due(simulation)) write(simulation);
+  if (report.dt == 0 || !(due(simulation) || held_back_)) return;
+  held_back_ = simulation.suspicious();
+  if (!held_back_) write(simulation);
 }
 
 void CheckpointObserver::write(const Simulation& simulation) {

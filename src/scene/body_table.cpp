@@ -46,8 +46,8 @@ const Table<StartConfig>& start_table() {
                          {"inside_out", StartKind::inside_out,
                           "target: the mirror image at the plane normal to axis"}}),
                     "scramble", "The target.")
-          .optional("amplitude", &StartConfig::amplitude, number("-", above_up_to(0, 1)), "0.5",
-                    "How far towards the target.")
+          .optional("amplitude", &StartConfig::amplitude, number("-", above(0)), "0.5",
+                    "How far towards the target; above 1 beyond it.")
           .optional("axis", &StartConfig::axis, direction(), "[0, 1, 0]",
                     "Normal of the plane or direction of the line.")
           .optional("seed", &StartConfig::seed, seed_number(), "7", "Of the random points of scramble.");

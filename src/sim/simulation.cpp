@@ -5,12 +5,12 @@
 #include "evert/core/log.hpp"
 #include "evert/math/nodal.hpp"
 
+#include "diagnosis.hpp"
 #include "flow_goals.hpp"
 #include "motion.hpp"
 #include "requirements.hpp"
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -18,23 +18,6 @@
 
 namespace evert {
 namespace {
-
-constexpr double light_speed = 299792458;  // [m/s]
-
-/// True where every |value| is at most `limit` and none is NaN. The bits of a magnitude are ordered as the
-/// magnitude, infinity and NaN above all: integers alone, so that this runs at the speed of memory.
-bool all_within(std::span<const double> values, double limit) {
-  constexpr auto sign = std::uint64_t{1} << 63U;
-  const auto highest = std::bit_cast<std::uint64_t>(limit);
-  std::uint64_t below_zero = 0;
-  for (const double value : values) below_zero |= highest - (std::bit_cast<std::uint64_t>(value) & ~sign);
-  return (below_zero & sign) == 0;
-}
-
-/// A velocity of which components grow without bound is noticed long before it overflows; positions follow.
-bool sound(std::span<const double> positions, std::span<const double> velocities) {
-  return all_within(positions, std::numeric_limits<double>::max()) && all_within(velocities, light_speed);
-}
 
 void set_owned(NodeField& field, std::span<const Vec3d> values) {
   for (std::size_t node = 0; node < values.size(); ++node)
@@ -68,6 +51,11 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[3], values[4], values[5]},
           {values[6], values[7], values[8]},
           {values[9], values[10], values[11]}};
+}
+
+/// Nothing that changes on the way, and no goal.
+bool stays_as_it_is(const SimulationDefinition& definition) {
+  return definition.activations.empty() && definition.goals.empty() && definition.events.empty();
 }
 
 /// Collective. None where the definition has none.
@@ -121,6 +109,8 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
+      soundness_(mesh_, collisions_.obstacles().empty() && prescribed_.empty() && !system_.body_force &&
+                            stays_as_it_is(definition)),
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
@@ -131,7 +121,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
   forces_stale_ = true;
   apply_due_events();
   refresh_forces();
-  agree_on_state();
+  agree_on_state(0);
 }
 
 StepReport Simulation::step(double dt) { return step_to(system_.time + dt); }
@@ -146,7 +136,7 @@ StepReport Simulation::step_to(double end_time) {
   auto report = advance(dt);
   system_.time = end_time;
   ++steps_;
-  report.stop_requested = agree_on_state();
+  report.stop_requested = agree_on_state(dt);
   return report;
 }
 
@@ -154,28 +144,20 @@ StepReport Simulation::advance(double dt) {
   try {
     return std::visit([&](auto& integrator) { return integrator.advance(system_, dt); }, integrator_);
   } catch (const SimulationError& error) {  // of a solve, on all ranks; it knows no time
-    throw SimulationError(moment() + error.what());
+    const auto what = moment() + error.what();
+    throw SimulationError(
+        what + blame_of_step(system_, integrator_, filter_.get(), {.dt = dt, .fixed = fixed_time_step_ > 0}));
   }
 }
 
-bool Simulation::agree_on_state() {
-  const auto x = system_.x.owned();
-  const auto v = system_.v.owned();
-  std::array<GlobalIndex, 2> counts{0, stop_requested_ ? 1 : 0};
-  if (!sound(x, v))
-    for (std::size_t i = 0; i < x.size(); i += 3)
-      counts[0] += sound(x.subspan(i, 3), v.subspan(i, 3)) ? 0 : 1;
-  MPI_Allreduce(MPI_IN_PLACE, counts.data(), 2, MPI_INT64_T, MPI_SUM, mesh_.comm);
-  for (const auto number : rigid_.bodies()) {  // every rank has all of them
-    const auto& body = rigid_.body(number);
-    if (!sound(body.center().components, body.velocity().components) ||
-        !all_within(body.angular_velocity().components, light_speed))
-      give_up("the motion of '" + obstacles()[number]->name() + "' has blown up");
+bool Simulation::agree_on_state(double dt) {
+  const auto found = soundness_.look(system_, dt, stop_requested_);
+  if (found.ailment != Ailment::none) {
+    const auto what = moment() + what_happened(system_, found, soundness_);
+    throw SimulationError(
+        what + what_to_try(system_, integrator_, filter_.get(), {.dt = dt, .fixed = fixed_time_step_ > 0}));
   }
-  if (counts[0] > 0)
-    give_up("the motion has blown up, " + std::to_string(counts[0]) + " of " +
-            std::to_string(mesh_.total_nodes) + " nodes are faster than light or not finite");
-  return counts[1] > 0;
+  return found.stop;
 }
 
 std::string Simulation::moment() const {
@@ -343,11 +325,13 @@ void Simulation::set_properties(std::int32_t region, const ElasticProperties& pr
   elastic_.set_properties(region, properties);
   if (filter_) filter_->material_changed(region);
   time_step_.reset();
+  soundness_.forget();
   forces_stale_ = true;
 }
 
 void Simulation::set_gravity(const Vec3d& gravity) {
   system_.gravity = gravity;
+  soundness_.forget();
   forces_stale_ = true;
 }
 
@@ -436,7 +420,8 @@ void Simulation::restore(const NodeState& nodes, std::span<const StateScalar> sc
   follow_flow();
   refresh_forces();
   time_step_.restore(control);  // after the events, which reset it
-  agree_on_state();
+  soundness_.forget();
+  agree_on_state(0);
 }
 
 }  // namespace evert

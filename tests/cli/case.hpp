@@ -36,6 +36,7 @@ struct Case {
 
 /// Those of muscle and tendon.
 [[nodiscard]] std::vector<Case> fibre_cases();
+[[nodiscard]] std::vector<Case> extremes_cases();
 [[nodiscard]] std::vector<Case> filter_cases();
 [[nodiscard]] std::vector<Case> material_cases();
 [[nodiscard]] std::vector<Case> quasistatic_cases();

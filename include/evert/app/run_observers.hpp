@@ -72,13 +72,16 @@ class ObstacleObserver final : public Observer {
   double interval_;
 };
 
-/// Checkpoints by simulated and by wall time, and one when the run ends early.
+/// Checkpoints by simulated and by wall time, and one when the run ends early. None of a motion that begins
+/// to explode: the last good one stays.
 class CheckpointObserver final : public Observer {
  public:
   CheckpointObserver(CheckpointWriter writer, const CheckpointConfig& config);
   [[nodiscard]] double next_stop(double time) const override;
   void observe(Simulation& simulation, const StepReport& report) override;
   void write(const Simulation& simulation);
+  /// The simulated time of the last one [s]; negative: none was written.
+  [[nodiscard]] double written_at() const { return written_at_; }
 
  private:
   [[nodiscard]] bool due(const Simulation& simulation) const;
@@ -86,6 +89,7 @@ class CheckpointObserver final : public Observer {
   CheckpointConfig config_;
   double written_at_wall_;  // [s]
   double written_at_ = -1;  // [s] simulated
+  bool held_back_ = false;  // one is due
 };
 
 /// The progress line.

@@ -72,7 +72,7 @@ enum class StartKind { none, scramble, flatten_plane, flatten_line, flatten_poin
 /// box, or the point mirrored at that plane (inside_out).
 struct StartConfig {
   StartKind kind = StartKind::scramble;  ///< never none: then the whole optional is empty
-  double amplitude = 1;                  ///< [-] in (0, 1]
+  double amplitude = 1;                  ///< [-] > 0
   Vec3d axis{{0, 1, 0}};                 ///< unit vector: normal of the plane, direction of the line
   std::uint64_t seed = 1;  ///< of scramble; the target of a node depends on the seed and its number only
 };

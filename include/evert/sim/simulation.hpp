@@ -3,6 +3,7 @@
 #include "evert/math/vec3.hpp"
 #include "evert/mesh/distributed_mesh.hpp"
 #include "evert/sim/definition.hpp"
+#include "evert/sim/soundness.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -58,8 +59,9 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Advances by `dt` [s]. Throws SimulationError, on all ranks and with the time in it, when a solve does
-  /// not converge, when afterwards a position is not finite or a velocity not below that of light, and when
-  /// `dt` is lost in the rounding of the time. The state is then that of a broken step: good for nothing.
+  /// not converge, when afterwards a position is not finite or a velocity not below that of light, when
+  /// velocities explode (GrowthWatch), and when `dt` is lost in the rounding of the time; with where, why and
+  /// what to try. The state is then that of a broken step: good for nothing.
   StepReport step(double dt);
   /// The same to exactly `end_time` [s], in one step.
   StepReport step_to(double end_time);
@@ -77,6 +79,9 @@ class Simulation {
   [[nodiscard]] bool solves_for_velocities() const {
     return std::holds_alternative<Newmark>(integrator_) && elastic_.couples_velocities();
   }
+
+  /// Not collective. True where the motion seems to begin to explode: no state to go on from.
+  [[nodiscard]] bool suspicious() const { return soundness_.watch().suspicious(); }
 
   /// Throws SimulationError with the time, `what`, and what may help. Not collective; for all ranks together.
   [[noreturn]] void give_up(const std::string& what) const;
@@ -140,8 +145,9 @@ class Simulation {
   /// True when muscle may become much stiffer within `duration` [s].
   [[nodiscard]] bool activation_rises(double duration) const;
   StepReport advance(double dt);
-  /// True when any rank has called request_stop. Throws SimulationError when any rank's state is not sound.
-  bool agree_on_state();
+  /// After a step of `dt` [s], or 0 at a start. True when any rank has called request_stop. Throws
+  /// SimulationError when any rank's state is not sound.
+  bool agree_on_state(double dt);
   /// "at t = 0.1 s, step 12: ", for messages.
   [[nodiscard]] std::string moment() const;
 
@@ -157,6 +163,7 @@ class Simulation {
   Integrator integrator_;
   double fixed_time_step_;
   TimeStepControl time_step_;
+  Soundness soundness_;
   std::vector<Activation> activations_;
   std::vector<TimedEvent> events_;
   std::size_t events_done_ = 0;

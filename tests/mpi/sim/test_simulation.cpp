@@ -74,6 +74,86 @@ TEST(Simulation, StopsWhereTheStepIsLostInTheTime) {
   }
 }
 
+/// Steps until it fails, at most `most`.
+std::string error_of_steps(Simulation& simulation, double dt, int most) {
+  return simulation_error_of([&] {
+    for (int step = 0; step < most; ++step) simulation.step(dt);
+  });
+}
+
+/// The same on every rank as on the first.
+bool is_on_all_ranks(std::string text) {
+  const auto own = text;
+  auto size = static_cast<int>(text.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  text.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(text.data(), size, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  int same = text == own ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+  return same != 0;
+}
+
+const std::string rings = "bodies.cube.start={kind: scramble, amplitude: 1e-3}";
+
+double auto_step() {
+  return test::build(scene, {"integrator.time_step=auto", rings}).simulation->suggested_time_step();
+}
+
+TEST(Simulation, StopsStepsAboveTheBoundLongBeforeAnythingOverflows) {
+  const double dt = auto_step();
+  for (const std::string method : {"newmark", "verlet", "symplectic_euler"})
+    for (const double factor : {3.0, 5.0}) {
+      const auto built = test::build(scene, {"integrator.method=" + method, rings});
+      auto& simulation = *built.simulation;
+      const auto error = error_of_steps(simulation, factor * dt, 100);
+      for (const char* part : {"the motion has blown up: velocities turned round in each of the last",
+                               "first to look at is node", "of element", "of 'cube' on rank",
+                               "times the longest that is stable at rest, because of element",
+                               "a well-shaped tetrahedron", "try an integrator.time_step of"})
+        EXPECT_NE(error.find(part), std::string::npos)
+            << method << ": says nothing of '" << part << "': " << error;
+      EXPECT_TRUE(is_on_all_ranks(error));
+      EXPECT_LT(simulation.steps(), 20);
+    }
+}
+
+TEST(Simulation, StopsEnergyFromNowhere) {
+  // A spin that is symmetric stirs the fastest vibrations by rounding only; others grow first, and do not
+  // turn round.
+  const auto built = test::build(scene, {"bodies.cube.spin=[1, 2, 3]"});
+  const auto error = error_of_steps(*built.simulation, 2 * auto_step(), 200);
+  EXPECT_NE(error.find("the motion has blown up"), std::string::npos) << error;
+  EXPECT_NE(error.find("try an integrator.time_step of"), std::string::npos) << error;
+  EXPECT_EQ(built.simulation->steps() % EnergyWatch::interval, 0) << error;
+}
+
+TEST(Simulation, LetsBodiesFallWithoutEnd) {
+  for (const char* velocity : {"[0, 0, 0]", "[0, 0.1, 0]"}) {
+    const auto built =
+        test::build(scene, {"gravity=[0, -1e6, 0]", std::string("bodies.cube.velocity=") + velocity});
+    EXPECT_EQ(error_of_steps(*built.simulation, 1e-3, 500), "");
+  }
+}
+
+TEST(Simulation, SuspectsWhatBeginsToExplodeAndNothingElse) {
+  const auto built = test::build(scene, {"integrator.method=verlet", rings});
+  auto& simulation = *built.simulation;
+  for (int step = 0; step < 200; ++step) {
+    simulation.step(1e-3);
+    EXPECT_FALSE(simulation.suspicious()) << step;
+  }
+  int suspicious = 0;
+  const double dt = 2 * auto_step();
+  const auto error = simulation_error_of([&] {
+    for (int step = 0; step < 100; ++step) {
+      simulation.step(dt);
+      suspicious += simulation.suspicious() ? 1 : 0;
+    }
+  });
+  EXPECT_NE(error, "");
+  EXPECT_GT(suspicious, 0);
+}
+
 /// A definition made by hand, which no scene has checked.
 TEST(Simulation, RefusesConsistentMassesWithContactOrAtRest) {
   const auto made_with = [](const std::function<void(SimulationDefinition&)>& change) {
