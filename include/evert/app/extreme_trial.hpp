@@ -11,7 +11,7 @@ namespace evert {
 
 enum class Grade {
   recovered,  ///< at the rest shape, nothing inverted
-  stable,     ///< came to its end with no more energy than it began with
+  stable,     ///< came to its end with its energy bounded
   failed,     ///< stopped with a message that says what, when and what to try
   defect,     ///< anything else
 };
@@ -37,9 +37,9 @@ struct TrialEnd {
   bool timed_out = false;
   bool finite = true;
   long long inverted_points = 0;
-  double shape_error = 0;    ///< RMS distance to the rest shape over the size
-  double stable_gain = 0.2;  ///< ExtremeCase::energy_gain
-  double energy_gain = 0;    ///< most that it ever had more than at the start, over the scale of its energies
+  double shape_error = 0;     ///< RMS distance to the rest shape over the size
+  double stable_gain = 0.81;  ///< ExtremeCase::energy_gain
+  double energy_gain = 0;  ///< most that it ever had more than at the start, over the scale of its energies
 };
 
 inline constexpr double recovered_within = 1e-6;  ///< shape error over the size, docs/recovery.md

@@ -17,7 +17,7 @@ TEST(ExtremeGrades, FollowFromTheEnd) {
   EXPECT_EQ(graded({.inverted_points = 1}).grade, Grade::stable);
   EXPECT_EQ(graded({.shape_error = 1e-5}).grade, Grade::stable);
   EXPECT_EQ(graded({.shape_error = 0.9 * recovered_within}).grade, Grade::recovered);
-  EXPECT_EQ(graded({.shape_error = 0.1, .energy_gain = 0.5}).grade, Grade::defect);
+  EXPECT_EQ(graded({.shape_error = 0.1, .energy_gain = 0.9}).grade, Grade::defect);
   EXPECT_EQ(graded({.error = "at t = 0 s, step 0: something is wrong; try something else"}).grade,
             Grade::failed);
 }
