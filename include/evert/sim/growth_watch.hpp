@@ -17,7 +17,7 @@ namespace evert {
 class GrowthWatch {
  public:
   static constexpr double limit = 100;  ///< of Σ m v², in steps in a row that all turn it round
-  static constexpr double much = 10;    ///< no longer a state to go on from
+  static constexpr double much = 10;    ///< no longer a state to go on from, whatever the reason
 
   struct Sums {
     double turned = 0;  ///< Σ m v·v' over owned nodes, v' of the look before [J]
@@ -31,19 +31,20 @@ class GrowthWatch {
   /// Not collective. With the sums over all ranks.
   void judge(const Sums& all);
   /// What was seen belongs to another state.
-  void forget() { square_ = 0, turns_ = 0, growth_ = 1, largest_ = 1; }
+  void forget() { square_ = 0, turns_ = 0, growth_ = 1, largest_ = 1, all_growth_ = 1; }
 
   /// Of Σ m v², since the first of the turns that go on, but for the step that it grew most in.
   [[nodiscard]] double growth() const { return growth_ / largest_; }
   [[nodiscard]] int turns() const { return turns_; }
   [[nodiscard]] bool exploding() const { return growth() > limit; }
-  [[nodiscard]] bool suspicious() const { return growth() > much; }
+  [[nodiscard]] bool suspicious() const { return all_growth_ > much; }
 
  private:
   std::vector<float> before_;  // of velocities: only signs and powers of ten matter
   double square_ = 0;          // of the look before
   int turns_ = 0;              // in a row, each with growth
   double growth_ = 1, largest_ = 1;
+  double all_growth_ = 1;  // with the first turn and the largest step
 };
 
 }  // namespace evert
