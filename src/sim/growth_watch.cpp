@@ -22,7 +22,7 @@ GrowthWatch::Sums GrowthWatch::look(std::span<const double> masses, std::span<co
 }
 
 void GrowthWatch::judge(const Sums& all) {
-  if (all.turned < 0 && all.square > square_) {
+  if (all.turned < 0 && square_ > 0 && all.square > square_) {
     all_growth_ *= all.square / square_;
     // The first turn tells nothing: the velocity before may have been next to nothing by chance.
     if (turns_++ > 0) {

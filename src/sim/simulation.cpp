@@ -109,8 +109,7 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
-      soundness_(mesh_, collisions_.obstacles().empty() && prescribed_.empty() && !system_.body_force &&
-                            stays_as_it_is(definition)),
+      soundness_(mesh_, prescribed_.empty() && !system_.body_force && stays_as_it_is(definition)),
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {

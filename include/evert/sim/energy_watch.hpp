@@ -5,7 +5,7 @@
 
 namespace evert {
 
-/// Notices energy that comes from nowhere, in scenes in which nothing does work on the bodies but gravity:
+/// Notices energy that comes from nowhere, where nothing does work on the bodies but gravity:
 /// once in a while, since the energy costs about as much as half of the forces.
 ///
 /// An error of the scheme makes energies ripple by a share of themselves (of symplectic Euler, by 2/(1 + s)
@@ -15,12 +15,15 @@ class EnergyWatch {
   static constexpr std::int64_t interval = 64;  ///< [steps]
   static constexpr double limit = 100;          ///< of the energy of the start and the work of gravity
 
-  /// Not collective. `closed`: no obstacle, held node, load, event, activation or goal does work.
+  /// Not collective. `closed`: no held node, load, event, activation or goal does work. What obstacles that
+  /// move touch begins anew.
   explicit EnergyWatch(bool closed = false) : closed_(closed) {}
 
   /// Collective. After every step of `dt` [s], of sound states. True when the energy has grown beyond
   /// `limit`.
   [[nodiscard]] bool has_grown(const System& system, double dt);
+  /// Collective. True where it has grown by a tenth of that by now.
+  [[nodiscard]] bool is_growing(const System& system);
   /// The next look is at a start.
   void forget() { looks_ = 0; }
   /// Times that the energy was that of the start, at the last look.
@@ -32,12 +35,21 @@ class EnergyWatch {
     double potential = 0;  // of gravity [J]
     double square = 0;     // Σ m v² [J]
     double reach = 0;      // Σ m x² [kg m²]
+    bool touched = false;  // by obstacles that move, since the last look
   };
-  [[nodiscard]] static Energies energies_of(const System& system);
+  struct Obstacles {
+    double impulses = 0;  // a number that changes with what they give on this rank
+    double poses = 0;     // and with where they are
+    bool moves = false;   // some of them, now
+  };
+  [[nodiscard]] static Obstacles obstacles_of(const System& system);
+  [[nodiscard]] Energies energies_of(const System& system);
+  [[nodiscard]] bool grows_beyond(double factor, const Energies& now);
 
   bool closed_;
   std::int64_t looks_ = 0;
   Energies first_;
+  Obstacles obstacles_;
   double growth_ = 1;
 };
 

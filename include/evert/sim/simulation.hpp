@@ -80,8 +80,8 @@ class Simulation {
     return std::holds_alternative<Newmark>(integrator_) && elastic_.couples_velocities();
   }
 
-  /// Not collective. True where the motion seems to begin to explode: no state to go on from.
-  [[nodiscard]] bool suspicious() const { return soundness_.watch().suspicious(); }
+  /// True where the motion seems to begin to explode: no state to go on from.
+  [[nodiscard]] bool suspicious() { return soundness_.suspicious(system_); }
 
   /// Throws SimulationError with the time, `what`, and what may help. Not collective; for all ranks together.
   [[noreturn]] void give_up(const std::string& what) const;

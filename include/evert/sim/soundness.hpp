@@ -31,6 +31,10 @@ class Soundness {
     watch_.forget();
     energy_.forget();
   }
+  /// Collective. The motion seems to begin to explode.
+  [[nodiscard]] bool suspicious(const System& system) {
+    return watch_.suspicious() || energy_.is_growing(system);
+  }
   [[nodiscard]] const GrowthWatch& watch() const { return watch_; }
   [[nodiscard]] const EnergyWatch& energy() const { return energy_; }
 
