@@ -1,5 +1,6 @@
 // Where motions stop being stable, by bisection between runs: the constant c of each scheme, and the limits
 // of meshes with bad elements.  PHYSICS 5 and 9
+#include "evert/core/error.hpp"
 #include "evert/core/formatted.hpp"
 #include "evert/filter/collatz_wielandt.hpp"
 #include "evert/filter/spectrum.hpp"
@@ -44,9 +45,13 @@ class Runs {
   /// are still below 1e-3 m.
   [[nodiscard]] bool are_stable(double dt, int steps) {
     simulation().restore({start_, zero_, zero_}, scalars_);
-    for (int step = 0; step < steps; ++step) {
-      simulation().step(dt);
-      if (step % 10 == 9 && largest_displacement() > 100 * amplitude) return false;
+    try {
+      for (int step = 0; step < steps; ++step) {
+        simulation().step(dt);
+        if (step % 10 == 9 && largest_displacement() > 100 * amplitude) return false;
+      }
+    } catch (const SimulationError&) {  // it noticed first
+      return false;
     }
     return true;
   }

@@ -108,7 +108,7 @@ TEST(Simulation, StopsStepsAboveTheBoundLongBeforeAnythingOverflows) {
       const auto error = error_of_steps(simulation, factor * dt, 100);
       for (const char* part : {"the motion has blown up: velocities turned round in each of the last",
                                "first to look at is node", "of element", "of 'cube' on rank",
-                               "times the longest that is stable at rest, because of element",
+                               "times the longest that is sure to be stable at rest, because of element",
                                "a well-shaped tetrahedron", "try an integrator.time_step of"})
         EXPECT_NE(error.find(part), std::string::npos)
             << method << ": says nothing of '" << part << "': " << error;
