@@ -100,8 +100,9 @@ std::string filter_advice(const ShortestStep& shortest, const BrokenStep& step, 
 }
 
 std::string too_long(System& system, double stable, const ModalFilter* filter, const BrokenStep& step) {
-  std::string text = formatted("; the step of %.4g s is %.3g times the longest that is sure to be stable at rest",
-                               step.dt, step.dt / stable);
+  std::string text =
+      formatted("; the step of %.4g s is %.3g times the longest that is sure to be stable at rest", step.dt,
+                step.dt / stable);
   if (filter != nullptr)
     return text + formatted(": try an integrator.time_step of %.3g or auto, or a longer filter.time_step",
                             safety * stable);

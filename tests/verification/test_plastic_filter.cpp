@@ -18,6 +18,7 @@ bodies:
     mesh: {generate: sliver_ball, radius: 0.2, edge_length: 0.06, jitter: 0.05, thinnest: 0.002}
     transform: {translate: [0, 0.21, 0]}
     density: 1000
+    velocity: [1, 0, 0.7]
     material: {model: neo_hookean, youngs_modulus: 2.0e5, poissons_ratio: 0.3}
     damping: {model: blended, stiffness_proportional: 0, mass_proportional: 2}
     plasticity: {)" +
