@@ -9,7 +9,6 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <malloc.h>
 #include <memory>
 
 namespace evert {
@@ -112,7 +111,8 @@ SceneCosts scene_costs(const std::string& path, std::span<const std::string> ove
       }
     }
   SceneCosts costs;
-  if (subjects.front() != nullptr) costs.whole = subjects.front()->cost();
+  if (subjects.front() == nullptr) return costs;
+  costs.whole = subjects.front()->cost();
   for (std::size_t f = 0; f < features.size(); ++f) {
     const auto& without = subjects[f + 1];
     costs.features.push_back(

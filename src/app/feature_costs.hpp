@@ -39,7 +39,7 @@ struct SceneCosts {
 
 /// Builds the scene with and without each of its features, all at once, and times their steps in turn, so
 /// that what else the machine does falls on all alike; the least of several times counts. Not collective.
-/// Leaves out what is refused, or blows up, without a feature.
+/// Leaves out what is refused, or blows up, without a feature; everything, where the scene itself blows up.
 [[nodiscard]] SceneCosts scene_costs(const std::string& path, std::span<const std::string> overrides,
                                      std::span<const Feature> features);
 

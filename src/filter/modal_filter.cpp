@@ -14,6 +14,8 @@
 namespace evert {
 namespace {
 
+bool is_clamped(const CellClamp& clamp) { return clamp.limit > 0; }
+
 /// Collective. Throws UserError unless masses are lumped and every cell is a tet4 of an isotropic model.
 void require_what_can_be_filtered(const DistributedMesh& mesh, const ElasticForces& elastic) {
   if (elastic.consistent_mass() != nullptr)
@@ -84,7 +86,7 @@ ChangedNodes nodes_of_flown(const FilterProblem& problem, ElasticForces& elastic
 /// a tenth of the limit nearer to that (materials/plasticity.hpp, stiffness_growth); that of a filtered one,
 /// a tenth of itself.
 double way_until_looked_at(const FilterCell& cell, const CellClamp& clamp, double limit) {
-  const double largest = clamp.limit > 0 ? limit : own_eigenvalue(cell);
+  const double largest = is_clamped(clamp) ? limit : own_eigenvalue(cell);
   const double bulk = std::max(cell.lame.lambda, 0.0) / (2 * cell.lame.mu);
   return std::log1p(0.1 * limit / largest) / (2 + std::max(bulk, 1.0));
 }
@@ -174,35 +176,38 @@ void ModalFilter::material_changed(std::int32_t region) {
   update(problem, changed, CellClamps(clamps_));
 }
 
-template <class IsStale>
-void ModalFilter::make_blocks(const FilterProblem& problem, IsStale&& is_stale) {
-  compliant_.resize(mesh_.cells.size());
-  std::vector<SeparateCells> separate;
-  std::size_t first = 0;
-  for (std::size_t e = 0; e < mesh_.cells.size(); ++e) {
-    if (is_stale(e, first)) separate.push_back(filtered_part(problem, e, first));
-    first += static_cast<std::size_t>(mesh_.cells[e].size());
-  }
-  int changed = separate.empty() ? 0 : 1;
-  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, mesh_.comm);
-  if (changed != 0) elastic_.separate(std::move(separate));
+bool ModalFilter::update(const FilterProblem& problem, const ChangedNodes& changed,
+                         const CellClamps& in_force) {
+  if (!std::isfinite(time_step())) return false;  // of a body that was cut
+  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
+  const bool made = make_blocks(problem, in_force);
   if (elastic_.may_flow()) bound_ways(problem, elastic_, clamps_, options_.limit_of(time_step()));
   if (options_.constraints == FilterConstraints::compliant)
     stiff_cells_ = evert::stiff_cells(problem, clamps_);
   if (options_.constraints == FilterConstraints::paper)
     shape_constraints_ = evert::shape_constraints(problem, clamps_);
   ++revision_;
+  return made;
 }
 
-void ModalFilter::update(const FilterProblem& problem, const ChangedNodes& changed,
-                         const CellClamps& in_force) {
-  if (!std::isfinite(time_step())) return;  // of a body that was cut
-  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
-  make_blocks(problem, [&](std::size_t entry, std::size_t first) {
-    const auto count = static_cast<std::size_t>(mesh_.cells[entry].size());
-    return !std::ranges::equal(std::span(clamps_).subspan(first, count),
-                               std::span(in_force).subspan(first, count));
-  });
+bool ModalFilter::make_blocks(const FilterProblem& problem, const CellClamps& in_force) {
+  compliant_.resize(mesh_.cells.size());
+  std::vector<SeparateCells> separate;
+  std::size_t first = 0;
+  for (std::size_t e = 0; e < mesh_.cells.size(); ++e) {
+    const auto count = static_cast<std::size_t>(mesh_.cells[e].size());
+    const auto now = std::span<const CellClamp>(clamps_).subspan(first, count);
+    const auto before = std::span(in_force).subspan(first, count);
+    if (compliant_[e] != nullptr && std::ranges::equal(now, before, {}, is_clamped, is_clamped))
+      reshape(problem, e, first);
+    else if (!std::ranges::equal(now, before))
+      separate.push_back(filtered_part(problem, e, first));
+    first += count;
+  }
+  int some = separate.empty() ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MAX, mesh_.comm);
+  if (some != 0) elastic_.separate(std::move(separate));
+  return some != 0;
 }
 
 bool ModalFilter::follow_flow() {
@@ -212,24 +217,14 @@ bool ModalFilter::follow_flow() {
   if (beyond == 0) return false;
   const PhaseScope phase(Phase::filter);
   const auto problem = filter_problem(mesh_, elastic_);
-  const auto changed = nodes_of_flown(problem, elastic_);
-  const auto in_force = clamps_;
-  looked_at_ = select(options_.selection, problem, options_.limit_of(time_step()), changed, clamps_);
-  make_blocks(problem, [&](std::size_t entry, std::size_t first) {
-    const auto same = [&](std::size_t c) { return (clamps_[c].limit > 0) == (in_force[c].limit > 0); };
-    for (std::size_t c = first; c < first + static_cast<std::size_t>(mesh_.cells[entry].size()); ++c)
-      if (!same(c)) return true;
-    if (compliant_[entry] != nullptr) reshape(problem, entry, first);
-    return false;
-  });
-  return true;
+  return update(problem, nodes_of_flown(problem, elastic_), CellClamps(clamps_));
 }
 
 void ModalFilter::reshape(const FilterProblem& problem, std::size_t entry, std::size_t first) {
   std::vector<TetShape> shapes;
   CellClamps clamps;
   for (std::size_t c = first; c < first + static_cast<std::size_t>(mesh_.cells[entry].size()); ++c) {
-    if (!(clamps_[c].limit > 0)) continue;
+    if (!is_clamped(clamps_[c])) continue;
     shapes.push_back(problem.cells[c].shape);
     clamps.push_back(clamps_[c]);
   }
@@ -246,7 +241,7 @@ SeparateCells ModalFilter::filtered_part(const FilterProblem& problem, std::size
   LocalIndex interior = 0;
   for (LocalIndex cell = 0; cell < all.size(); ++cell) {
     const std::size_t c = first + static_cast<std::size_t>(cell);
-    if (!(clamps_[c].limit > 0)) continue;
+    if (!is_clamped(clamps_[c])) continue;
     part.cells.push_back(cell);
     clamps.push_back(clamps_[c]);
     const auto& of_cell = problem.cells[c];
@@ -275,8 +270,7 @@ SeparateCells ModalFilter::filtered_part(const FilterProblem& problem, std::size
 }
 
 LocalIndex ModalFilter::filtered_cells() const {
-  return static_cast<LocalIndex>(
-      std::ranges::count_if(clamps_, [](const CellClamp& clamp) { return clamp.limit > 0; }));
+  return static_cast<LocalIndex>(std::ranges::count_if(clamps_, is_clamped));
 }
 
 }  // namespace evert

@@ -11,7 +11,7 @@ namespace evert {
 /// the stiffness that is left to be explicit.  PHYSICS 9
 class CompliantBlock : public ElasticBlock {
  public:
-  /// Of cells that have flown: other shapes and clamps. The mass shares stay.
+  /// Other shapes of the same cells, and clamps. The mass shares stay.
   virtual void reshape(std::span<const TetShape> shapes, std::span<const CellClamp> clamps) = 0;
 };
 

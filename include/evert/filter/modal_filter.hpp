@@ -40,7 +40,7 @@ class ModalFilter {
   void material_changed(std::int32_t region);
 
   /// Collective. Filters anew what has flown noticeably since it was last looked at, in the shape that it has
-  /// now, and what is next to it. Returns true where something has: then forces are to be updated.
+  /// now, and what is next to it. Returns true where blocks were made anew: then forces are to be updated.
   bool follow_flow();
 
   /// As asked for.
@@ -67,11 +67,11 @@ class ModalFilter {
   void choose();
   /// Collective.
   [[nodiscard]] bool filtered_on_any_rank() const;
-  /// Collective. Selects anew, and makes the blocks of the entries that are not as the clamps `in_force` say.
-  void update(const FilterProblem& problem, const ChangedNodes& changed, const CellClamps& in_force);
-  /// Collective. Makes the blocks of entries for which `is_stale(entry, its first cell)`.
-  template <class IsStale>
-  void make_blocks(const FilterProblem& problem, IsStale&& is_stale);
+  /// Collective. Selects anew, and brings the blocks up to date, which are as the clamps `in_force` say.
+  /// Returns true where some were made anew, on any rank.
+  bool update(const FilterProblem& problem, const ChangedNodes& changed, const CellClamps& in_force);
+  /// Collective. Compliant blocks of the same cells are reshaped only.
+  bool make_blocks(const FilterProblem& problem, const CellClamps& in_force);
   /// The cells of an entry that have a clamp, and a block of them. `first`: its first cell in the problem.
   [[nodiscard]] SeparateCells filtered_part(const FilterProblem& problem, std::size_t entry,
                                             std::size_t first);
