@@ -12,7 +12,7 @@ namespace {
 
 struct Totals {
   std::array<int, 4> of_grade{};  // in the order of Grade
-  int kept = 0, let_through = 0;
+  int promised = 0, kept = 0, let_through = 0;
   int over_limit = 0, caught = 0, caught_in_time = 0, step_works = 0;
   std::int64_t latest = 0;  // steps to the last detection
   double seconds = 0;
@@ -22,7 +22,10 @@ Totals totals_of(const std::vector<TriedCase>& all) {
   Totals totals;
   for (const auto& [extreme, trial] : all) {
     ++totals.of_grade[static_cast<std::size_t>(trial.grade)];
-    totals.kept += trial.kept ? 1 : 0;
+    if (extreme.promise != Promise::any) {
+      ++totals.promised;
+      totals.kept += trial.kept ? 1 : 0;
+    }
     totals.let_through += trial.let_through ? 1 : 0;
     totals.seconds += trial.seconds;
     if (extreme.step_over_limit.value_or(0) <= 1) continue;
@@ -141,7 +144,8 @@ void write_totals(const std::vector<TriedCase>& all, std::ostream& out) {
   const auto count = static_cast<int>(all.size());
   out << formatted("%d cases: %d recovered, %d stable, %d failed with a message, %d defects\n", count,
                    totals.of_grade[0], totals.of_grade[1], totals.of_grade[2], totals.of_grade[3]);
-  out << formatted("promises: %d of %d cases kept theirs\n", totals.kept, count);
+  out << formatted("promises: %d of %d cases kept theirs; %d have none but to end in one of these\n",
+                   totals.kept, totals.promised, count - totals.promised);
   out << formatted("not finite: in %d cases something would have been written that is not\n",
                    totals.let_through);
   if (totals.over_limit == 0) return;

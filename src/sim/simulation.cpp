@@ -53,9 +53,14 @@ System::Impulses as_impulses(const std::array<double, 12>& values) {
           {values[9], values[10], values[11]}};
 }
 
-/// Nothing that changes on the way, and no goal.
-bool stays_as_it_is(const SimulationDefinition& definition) {
-  return definition.activations.empty() && definition.goals.empty() && definition.events.empty();
+/// Collective. No rank has anything that changes on the way, holds, or pulls, but gravity and obstacles.
+bool is_closed(MPI_Comm comm, const SimulationDefinition& definition, bool held, bool loaded) {
+  int closed = !held && !loaded && definition.activations.empty() && definition.goals.empty() &&
+                       definition.events.empty()
+                   ? 1
+                   : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &closed, 1, MPI_INT, MPI_MIN, comm);
+  return closed != 0;
 }
 
 /// Collective. None where the definition has none.
@@ -109,7 +114,8 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
-      soundness_(mesh_, prescribed_.empty() && !system_.body_force && stays_as_it_is(definition)),
+      soundness_(mesh_,
+                 is_closed(mesh_.comm, definition, !prescribed_.empty(), static_cast<bool>(system_.body_force))),
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
