@@ -114,8 +114,8 @@ Simulation::Simulation(DistributedMesh mesh, SimulationDefinition definition)
       integrator_(make_integrator(definition.method, system_, definition.quasistatic)),
       fixed_time_step_(definition.fixed_time_step),
       time_step_(definition.time_step),
-      soundness_(mesh_,
-                 is_closed(mesh_.comm, definition, !prescribed_.empty(), static_cast<bool>(system_.body_force))),
+      soundness_(mesh_, is_closed(mesh_.comm, definition, !prescribed_.empty(),
+                                  static_cast<bool>(system_.body_force))),
       activations_(std::move(definition.activations)),
       events_(std::move(definition.events)),
       obstacle_impulses_before_(system_.obstacle_impulses.size()) {
