@@ -110,6 +110,15 @@ Arguments petsc_options(const std::string& command, const Arguments& arguments) 
   }
 }
 
+/// One process that no launcher started needs neither a daemon beside it nor a look for fast networks, for
+/// which Open MPI takes half a second. What the user has set stays.
+void start_alone_without_delay() {
+  for (const char* launched : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
+    if (std::getenv(launched) != nullptr) return;
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
 /// PETSc's sentence when it refuses to start (an options file that cannot be taken apart), else "".
 std::string initialize_petsc(const char* program, Arguments options, const char* help) {
   std::vector<char*> argv{const_cast<char*>(program)};
@@ -117,6 +126,7 @@ std::string initialize_petsc(const char* program, Arguments options, const char*
   argv.push_back(nullptr);
   int argc = static_cast<int>(argv.size()) - 1;
   char** pointer = argv.data();
+  start_alone_without_delay();
   return evert::refusal_of([&] { return PetscInitialize(&argc, &pointer, nullptr, help); });
 }
 

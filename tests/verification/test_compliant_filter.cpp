@@ -14,10 +14,10 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include "tests/support/strain.hpp"
+#include "tests/support/thorough.hpp"
 #include "tests/support/verify.hpp"
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,9 +44,6 @@ constexpr std::array cases{
     Case{"cut_cube", 0.06, 0.9e-3, spare_mass, 0.005, reported},
     Case{"ball404", 1000, 7.582e-3, spare_mass, 0.005, 0.005},
     Case{"ball20k", 1000, 5.117e-3, spare_mass, 0.005, 0.08}};
-
-/// What takes minutes is left out unless EVERT_ALL_SEEDS is set.
-bool thorough() { return std::getenv("EVERT_ALL_SEEDS") != nullptr; }
 
 constexpr Lame reference_lame = Lame::from_young_poisson(1e4, 0.3);
 
@@ -254,7 +251,8 @@ TEST_P(OnMesh, KeepsTheFirstEightFrequencies) {
   ASSERT_EQ(exact.size(), 8U);
   for (const auto constraints :
        {FilterConstraints::none, FilterConstraints::paper, FilterConstraints::compliant}) {
-    if (constraints == FilterConstraints::paper && std::string(GetParam().mesh) == "ball20k" && !thorough())
+    if (constraints == FilterConstraints::paper && std::string(GetParam().mesh) == "ball20k" &&
+        !test::thorough())
       continue;
     const auto found = first_frequencies(Body(mesh, GetParam(), constraints), limit);
     const double error = largest_error(found, exact);
@@ -460,7 +458,7 @@ TEST_P(OnMesh, DoesNotDependOnTheNumberOfRanks) {
   }
   const auto whole =
       simulation(path_, GetParam(), amplitude_of(GetParam()), IntegrationMethod::newmark, PETSC_COMM_SELF);
-  const int steps = std::string(GetParam().mesh) == "ball20k" && !thorough() ? 20 : 200;
+  const int steps = std::string(GetParam().mesh) == "ball20k" && !test::thorough() ? 20 : 200;
   const double difference =
       test::largest_difference(test::after_steps(*shared, steps), test::after_steps(*whole, steps));
   EXPECT_LE(difference, 1e-9);
