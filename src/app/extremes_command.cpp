@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <unistd.h>
 
@@ -23,7 +24,8 @@ constexpr const char* help =
   NAME                       the cases with NAME in theirs; all without it
   -list                      the names of the cases; runs nothing
   -write DIR                 the scene of the one case with that name, for evert run; runs nothing
-  -out FILE                  a table for each kind of case, in Markdown
+  -out FILE                  a table for each kind of case, in Markdown; what the file has below the line
+                             <!-- not made by evert extremes --> stays there
   -time_limit S              wall time that a case may take; 60 s unless given
   -quiet                     of the cases, only those that do not keep their promise
 
@@ -89,6 +91,13 @@ int write_one(MPI_Comm comm, const std::vector<ExtremeCase>& cases, const std::s
   return 0;
 }
 
+/// Takes the directory of a case's files out of what is said about it.
+std::string without_directory(std::string message, const std::string& directory) {
+  for (auto at = message.find(directory + "/"); at != std::string::npos; at = message.find(directory + "/"))
+    message.erase(at, directory.size() + 1);
+  return message;
+}
+
 std::vector<TriedCase> try_all(MPI_Comm comm, const std::vector<ExtremeCase>& cases, double time_limit,
                                bool quiet, std::ostream& out) {
   constexpr double patience = 3;  // a step that does not end, of which the run itself cannot know
@@ -99,6 +108,8 @@ std::vector<TriedCase> try_all(MPI_Comm comm, const std::vector<ExtremeCase>& ca
     running = one.name();
     alarm(static_cast<unsigned>(patience * time_limit) + 10);
     tried.push_back({one, try_case(comm, one, scratch.path(), time_limit)});
+    auto& note = tried.back().trial.note;
+    note = without_directory(note, scratch.path());
     if (rank_of(comm) == 0 && !(quiet && tried.back().trial.kept)) write_line(tried.back(), out);
   }
   alarm(0);
@@ -115,6 +126,15 @@ int exit_code_of(const std::vector<TriedCase>& tried, bool root) {
     std::fprintf(stderr, "evert: %td of %zu cases did not end as they must; the first is %s: %s\n", broken,
                  tried.size(), first->extreme.name().c_str(), first->trial.note.c_str());
   return 1;
+}
+
+/// What the file at `path`, which a new one replaces, has below this line, and the line; "": there is none.
+std::string written_by_others(const std::string& path) {
+  constexpr const char* line = "<!-- not made by evert extremes -->\n";
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  const auto begin = text.str().find(line);
+  return begin == std::string::npos ? "" : text.str().substr(begin);
 }
 
 std::string command_of(std::span<const std::string> arguments) {
@@ -155,6 +175,7 @@ int extremes_command(MPI_Comm comm, std::span<const std::string> arguments, std:
     on_root(comm, [&] {
       std::ostringstream text;
       write_document(tried, command_of(arguments), text);
+      text << written_by_others(options.text("out"));
       write_file(options.text("out"), text.str());
     });
   return exit_code_of(tried, root);

@@ -18,13 +18,16 @@ void expect_table(const fs::path& place) {
   std::ifstream file(place / "table.md");
   std::stringstream text;
   text << file.rdbuf();
-  for (const char* part : {"evert extremes", "## Step over the limit, by element", "| 10 x |", "detected, "})
+  for (const char* part : {"evert extremes", "## Step over the limit, by element", "| 10 x |", "detected, ",
+                           "<!-- not made by evert extremes -->\nby hand"})
     EXPECT_NE(text.str().find(part), std::string::npos) << part;
+  EXPECT_EQ(text.str().find("an old table"), std::string::npos);
 }
 
 const std::vector<Case> cases{
     {.name = "extremes_of_one_kind",
      .command = "extremes element/10_x/hex8 -out table.md",
+     .files = {{"table.md", "an old table\n<!-- not made by evert extremes -->\nby hand\n"}},
      .exit_code = 0,
      .says = {"3 cases", "3 of 3 cases kept theirs",
               "3 of 3 caught (100.0 %), 3 before anything was not finite"},
