@@ -218,7 +218,8 @@ BuiltScene build_scene(MPI_Comm comm, const SceneConfig& scene) {
                          .selection = scene.filter->selection,
                          .most_softened = scene.filter->most_softened,
                          .constraints = scene.filter->constraints,
-                         .projection = scene.filter->projection};
+                         .projection = scene.filter->projection,
+                         .projection_sweeps = scene.filter->projection_sweeps};
   return {std::make_unique<Simulation>(std::move(mesh), std::move(definition)), std::move(whole.bodies)};
 }
 

@@ -153,10 +153,15 @@ const Table<FilterConfig>& filter_table() {
                           "along the gradients at the beginning of the step: angular momentum is kept"},
                          {"goldenthal", FilterProjection::goldenthal, "along those of every iterate"}}),
                     "goldenthal", "How 'constraints: paper' keeps its lengths.")
+          .optional("projection_sweeps", &FilterConfig::projection_sweeps, integer(0, 30), "1",
+                    "With 'constraints: paper': so many iterations a step, however far lengths are off after "
+                    "them; 0: until all are kept to 1e-6 of themselves.")
           .then([](FilterConfig& config, const Value& map, const std::string& path) {
-            const auto* value = map.find("projection");
-            if (value != nullptr && config.constraints != FilterConstraints::paper)
-              fail(*value, join(path, "projection"), "goes with 'constraints: paper' only");
+            for (const char* key : {"projection", "projection_sweeps"}) {
+              const auto* value = map.find(key);
+              if (value != nullptr && config.constraints != FilterConstraints::paper)
+                fail(*value, join(path, key), "goes with 'constraints: paper' only");
+            }
           });
   return table;
 }

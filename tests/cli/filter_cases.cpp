@@ -50,6 +50,10 @@ const std::vector<Case> cases{
     good("filter_paper_constraints", "run scene.yaml -set filter.constraints=paper"),
     bad("filter_projection_of_compliance", "-set filter.projection=shake",
         {"filter.projection", "goes with 'constraints: paper' only"}),
+    bad("filter_sweeps_of_compliance", "-set filter.projection_sweeps=1",
+        {"filter.projection_sweeps", "goes with 'constraints: paper' only"}),
+    bad("filter_too_many_sweeps", "-set filter.constraints=paper -set filter.projection_sweeps=31",
+        {"filter.projection_sweeps", "30"}),
     bad("filter_lengths_that_held_nodes_contradict",
         "-set filter.constraints=paper -set obstacles={} "
         "-set 'bodies.cube.mesh={generate: box, size: [1, 1, 1], cells: [1, 2, 2], cell: tet6}' "

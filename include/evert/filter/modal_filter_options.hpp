@@ -12,6 +12,7 @@ struct ModalFilterOptions {
   double most_softened = 0.05;  ///< [-] of the mass of any region, in cells filtered for a step chosen so
   FilterConstraints constraints = FilterConstraints::none;  ///< compliant: the integrator must take part
   FilterProjection projection = FilterProjection::shake;    ///< of `paper`
+  int projection_sweeps = 0;      ///< of `paper`: most iterations a step; 0: until the lengths are kept
   double stability_constant = 2;  ///< c of the integrator: ωΔt ≤ c is stable without damping
   // What the body does without a filter:
   bool implicit_damping = false;   ///< the integrator takes it so, and makes larger steps with it

@@ -13,8 +13,8 @@ namespace evert {
 /// positions, and the velocities with them.  paper B, section 5; PHYSICS 9
 ///
 /// Positions go along W Jᵀ λ with (J W Jᵀ + 1e-8 of its diagonal) λ = C until all are met to 1e-6 of their
-/// lengths. Constraints that depend on each other are thereby met by the least of multipliers; those of which
-/// a scene holds or moves all nodes have no row in J.
+/// lengths, or for as many sweeps as the filter's options say. Constraints that depend on each other are
+/// thereby met by the least of multipliers; those of which a scene holds or moves all nodes have no row in J.
 class ShapeProjection {
  public:
   /// Collective. Of the shape constraints of `filter`, which it keeps up with.
@@ -45,6 +45,7 @@ class ShapeProjection {
   const ElasticForces& elastic_;
   const ModalFilter* filter_ = nullptr;  // null: the constraints stay
   FilterProjection form_;
+  int sweeps_ = 0;                                  // 0: until all are met
   std::vector<ShapeConstraint> all_, constraints_;  // as given; those of rows_ first
   std::vector<LocalIndex> fixed_;                   // owned nodes that are prescribed in all directions
   std::optional<RowSystem> rows_;

@@ -322,6 +322,7 @@ struct FilterConfig {
   double most_softened = 0.05;  ///< [-] in (0, 1], with auto
   FilterConstraints constraints = FilterConstraints::compliant;
   FilterProjection projection = FilterProjection::shake;  ///< of `paper`
+  int projection_sweeps = 0;  ///< [-] of `paper`, most iterations a step; 0: until lengths are kept
 };
 
 struct CheckpointConfig {
