@@ -130,6 +130,7 @@ int exit_code_of(const std::vector<TriedCase>& tried, bool root) {
 
 /// What the file at `path`, which a new one replaces, has below this line, and the line; "": there is none.
 std::string written_by_others(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return "";  // a pipe would be waited for
   constexpr const char* line = "<!-- not made by evert extremes -->\n";
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
