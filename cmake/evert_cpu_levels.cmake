@@ -1,20 +1,62 @@
-# add_cpu_level_objects(<name> SOURCE kernels.cpp LINK ...): compiles one source once per CPU level, always optimised
-# (what the tests run must be what users run), with EVERT_KERNEL_LEVEL defined as the level: v2, v3, v4 on x86-64, else
-# `baseline`. Makes the object libraries <name>_<level> and sets <name>_OBJECTS.  docs/design/cpu-levels.md
+# add_cpu_level_objects(<name> SOURCES kernels.cpp ... LINK ...): compiles sources once per CPU level, always optimised (what
+# the tests run must be what users run), with EVERT_KERNEL_LEVEL defined as the level. Makes the object libraries
+# <name>_<level> and sets <name>_OBJECTS.  docs/design/cpu-levels.md
+include_guard(GLOBAL)
 if(EVERT_X86)
-  set(EVERT_CPU_LEVELS v2 v3 v4)
-else()
-  set(EVERT_CPU_LEVELS baseline)
+  set(EVERT_CPU_LEVELS v2 v3 v4 CACHE STRING
+    "CPU levels to compile the kernels for: of v2, v3 and v4, or 'native', the widest that this machine runs")
 endif()
 
+function(evert_compiled_levels result)
+  set(all v2 v3 v4)
+  set(levels baseline)
+  if(EVERT_X86 AND EVERT_CPU_LEVELS STREQUAL native)
+    include(CheckCXXSourceRuns)
+    foreach(level IN LISTS all)
+      check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"x86-64-${level}\") ? 0 : 1; }"
+        EVERT_RUNS_X86_64_${level})
+      if(EVERT_RUNS_X86_64_${level})
+        set(levels ${level})
+      endif()
+    endforeach()
+  elseif(EVERT_X86)
+    set(levels)
+    foreach(level IN LISTS all)
+      if(level IN_LIST EVERT_CPU_LEVELS)
+        list(APPEND levels ${level})
+      endif()
+    endforeach()
+    set(unknown ${EVERT_CPU_LEVELS})
+    list(REMOVE_ITEM unknown ${all})
+    if(unknown OR NOT levels)
+      message(FATAL_ERROR "EVERT_CPU_LEVELS is '${EVERT_CPU_LEVELS}'; allowed are v2, v3 and v4, or native alone")
+    endif()
+  endif()
+  set(${result} ${levels} PARENT_SCOPE)
+endfunction()
+
+evert_compiled_levels(EVERT_COMPILED_LEVELS)
+set_property(GLOBAL PROPERTY EVERT_COMPILED_LEVELS ${EVERT_COMPILED_LEVELS})
+
+# EVERT_FOR_CPU_LEVELS(f): f(v2) f(v3) f(v4)
+list(JOIN EVERT_COMPILED_LEVELS ") f(" EVERT_CALLS)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/evert_cpu_levels.hpp @ONLY CONTENT
+"#pragma once
+/// The CPU levels that the kernels are compiled for, narrowest first: cmake/evert_cpu_levels.cmake.
+#define EVERT_FOR_CPU_LEVELS(f) f(@EVERT_CALLS@)
+")
+
 function(add_cpu_level_objects name)
-  cmake_parse_arguments(ARG "" "SOURCE" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  get_property(levels GLOBAL PROPERTY EVERT_COMPILED_LEVELS)
   set(objects)
-  foreach(level IN LISTS EVERT_CPU_LEVELS)
+  foreach(level IN LISTS levels)
     set(target ${name}_${level})
-    add_library(${target} OBJECT ${ARG_SOURCE})
+    add_library(${target} OBJECT ${ARG_SOURCES})
     target_compile_definitions(${target} PRIVATE EVERT_KERNEL_LEVEL=${level})
-    target_compile_options(${target} PRIVATE -O3)
+    if(NOT EVERT_SANITIZE)
+      target_compile_options(${target} PRIVATE -O3)
+    endif()
     if(EVERT_X86)
       target_compile_options(${target} PRIVATE -march=x86-64-${level})
     endif()

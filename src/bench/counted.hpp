@@ -24,33 +24,12 @@ class Counted {
   Counted(double value) : value_(value) {}  // NOLINT: constants convert, as those of packs
 
   [[nodiscard]] double value() const { return value_; }
-  static OperationLog& so_far() {
-    static OperationLog all;
-    return all;
-  }
+  static OperationLog& so_far();
 
-  /// What load(), store() and lane() of math/pack.hpp expect behind a pack.
-  class Lane {
-   public:
-    explicit Lane(double value) : value_(value) {}
-    template <class Alignment>
-    Lane(const double* from, Alignment /*tag*/) : value_(*from) {
-      so_far().read.insert(from);
-    }
-    template <class Alignment>
-    Lane(const float* from, Alignment /*tag*/) : value_(*from) {}  // of measures, which are not counted
-    template <class Alignment>
-    void copy_to(double* to, Alignment /*tag*/) const {
-      so_far().written.insert(to);
-      *to = value_;
-    }
-    double operator[](std::size_t /*lane*/) const { return value_; }
-
-   private:
-    double value_;
-  };
-  explicit Counted(const Lane& lane) : value_(lane[0]) {}
-  [[nodiscard]] Lane simd() const { return Lane(value_); }
+  static Counted load(const double* from) noexcept;
+  static Counted load(const float* from);  ///< of measures, which are not counted
+  void store(double* to) const noexcept;
+  double operator[](std::size_t /*lane*/) const { return value_; }
 
   friend Counted operator+(const Counted& a, const Counted& b) { return counted(a.value_ + b.value_); }
   friend Counted operator-(const Counted& a, const Counted& b) { return counted(a.value_ - b.value_); }
@@ -67,19 +46,9 @@ class Counted {
   friend bool operator>=(const Counted& a, const Counted& b) { return a.value_ >= b.value_; }
 
   friend Counted sqrt(const Counted& x) { return divided(std::sqrt(x.value_)); }
-  /// As many as evert::log of a pack takes.
-  friend Counted log(const Counted& x) {
-    constexpr double operations_of_log = 33;
-    so_far().flops += operations_of_log;
-    so_far().divisions += 1;
-    return std::log(x.value_);
-  }
-  /// As many as evert::exp of a pack takes.
-  friend Counted exp(const Counted& x) {
-    constexpr double operations_of_exp = 34;
-    so_far().flops += operations_of_exp;
-    return std::exp(x.value_);
-  }
+  /// As many as evert::log and evert::exp of a pack take.
+  friend Counted log(const Counted& x) noexcept;
+  friend Counted exp(const Counted& x) noexcept;
   friend Counted abs(const Counted& x) { return std::abs(x.value_); }
   friend Counted min(const Counted& a, const Counted& b) { return b < a ? b : a; }
   friend Counted max(const Counted& a, const Counted& b) { return b > a ? b : a; }
@@ -93,14 +62,9 @@ class Counted {
   friend Counted select(bool mask, const Counted& a, const Counted& b) { return mask ? a : b; }
 
  private:
-  static Counted counted(double value) {
-    so_far().flops += 1;
-    return value;
-  }
-  static Counted divided(double value) {
-    so_far().divisions += 1;
-    return counted(value);
-  }
+  // Out of line: in line in every expression of every kernel they take the compiler minutes.
+  static Counted counted(double value) noexcept;
+  static Counted divided(double value) noexcept;
 
   double value_ = 0;
 };

@@ -85,6 +85,18 @@ KernelCost force_cost_of(CountedCell<element> cell) {
   return cell.per_point(cost_of([&] { cell.update(); }));
 }
 
+/// Those whose cost is asked for.
+template <const auto& element>
+kernels::ElasticKernels counted_kernels(const Material& material, DampingModel damping) {
+  return kernels::with_model(material, damping, []<class Model, DampingModel kind>() {
+    auto table = kernels::needs_of_kernels<Counted, element, Model, kind>();
+    table.update = kernels::update<Counted, element, Model, kind>;
+    if constexpr (kind != DampingModel::none)
+      table.add_damping = kernels::add_damping<Counted, element, kind>;
+    return table;
+  });
+}
+
 /// What `visit` says of the element of a type.
 template <class Visit>
 KernelCost with_element(CellType type, Visit&& visit) {
@@ -106,8 +118,8 @@ KernelCost with_element(CellType type, Visit&& visit) {
 KernelCost force_cost(CellType type, const Material& material, DampingModel damping) {
   return with_element(
       type, [&]<const auto & element>() {
-        const auto kernels = kernels::kernels_of<Counted, element>(material, damping);
-        return force_cost_of(CountedCell<element>(material, damping, kernels));
+        return force_cost_of(
+            CountedCell<element>(material, damping, counted_kernels<element>(material, damping)));
       });
 }
 
@@ -119,8 +131,7 @@ KernelCost general_path_cost() {
 KernelCost damping_cost(CellType type, DampingModel damping) {
   return with_element(
       type, [&]<const auto & element>() {
-        CountedCell<element> cell(neo_hookean, damping,
-                                  kernels::kernels_of<Counted, element, NeoHookean>(damping));
+        CountedCell<element> cell(neo_hookean, damping, counted_kernels<element>(neo_hookean, damping));
         cell.update();
         return cell.per_point(cost_of(
             [&] { cell.block->add_damping(cell.x.data(), cell.f.data(), 1, cell.block->interior()); }));

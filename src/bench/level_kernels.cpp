@@ -3,38 +3,28 @@
 #include "evert/core/error.hpp"
 #include "evert/forces/kernels/cpu_level.hpp"
 
+#include "evert_cpu_levels.hpp"
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <string>
 
 namespace evert::bench {
 
 // One definition of kernels() per level, all of level.cpp.
-#if defined(__x86_64__)
-namespace v2 {
-LevelKernels kernels();
-}
-namespace v3 {
-LevelKernels kernels();
-}
-namespace v4 {
-LevelKernels kernels();
-}
-#else
-namespace baseline {
-LevelKernels kernels();
-}
-#endif
+#define EVERT_DECLARE(level) \
+  namespace level {          \
+  LevelKernels kernels();    \
+  }
+EVERT_FOR_CPU_LEVELS(EVERT_DECLARE)
+#undef EVERT_DECLARE
 
 const LevelKernels& level_kernels() {
-#if defined(__x86_64__)
-  static const std::array all{v2::kernels(), v3::kernels(), v4::kernels()};
-#else
-  static const std::array all{baseline::kernels()};
-#endif
+#define EVERT_LEVEL(level) level::kernels(),
+  static const LevelKernels all[] = {EVERT_FOR_CPU_LEVELS(EVERT_LEVEL)};
+#undef EVERT_LEVEL
   const auto name = evert::kernels::chosen_cpu_level().name;
   const auto* const found = std::ranges::find(all, name, &LevelKernels::name);
-  EVERT_ASSERT(found != all.end(), std::string(name));
+  EVERT_ASSERT(found != std::end(all), std::string(name));
   return *found;
 }
 

@@ -3,29 +3,21 @@
 #include "evert/core/error.hpp"
 #include "evert/forces/kernels/cpu_level.hpp"
 
+#include "evert_cpu_levels.hpp"
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <string>
 #include <string_view>
 
 namespace evert::filtered {
 
 // One definition of find() per level, all of filtered_level.cpp.
-#if defined(__x86_64__)
-namespace v2 {
-Kernels find(const Material& material);
-}
-namespace v3 {
-Kernels find(const Material& material);
-}
-namespace v4 {
-Kernels find(const Material& material);
-}
-#else
-namespace baseline {
-Kernels find(const Material& material);
-}
-#endif
+#define EVERT_DECLARE(level)              \
+  namespace level {                       \
+  Kernels find(const Material& material); \
+  }
+EVERT_FOR_CPU_LEVELS(EVERT_DECLARE)
+#undef EVERT_DECLARE
 
 namespace {
 
@@ -37,14 +29,12 @@ struct Level {
 }  // namespace
 
 Kernels kernels_for(const Material& material) {
-#if defined(__x86_64__)
-  static constexpr std::array levels{Level{"v2", v2::find}, Level{"v3", v3::find}, Level{"v4", v4::find}};
-#else
-  static constexpr std::array levels{Level{"baseline", baseline::find}};
-#endif
+#define EVERT_LEVEL(level) Level{#level, level::find},
+  static constexpr Level levels[] = {EVERT_FOR_CPU_LEVELS(EVERT_LEVEL)};
+#undef EVERT_LEVEL
   const auto name = kernels::chosen_cpu_level().name;
   const auto* const level = std::ranges::find(levels, name, &Level::name);
-  EVERT_ASSERT(level != levels.end(), std::string(name));
+  EVERT_ASSERT(level != std::end(levels), std::string(name));
   const Kernels found = level->find(material);
   EVERT_ASSERT(found.lanes > 0, "a model with fibres");
   return found;

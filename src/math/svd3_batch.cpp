@@ -2,38 +2,27 @@
 
 #include "evert/math/cpu_support.hpp"
 
+#include "evert_cpu_levels.hpp"
 #include <cassert>
 #include <cstdlib>
+#include <stdexcept>
 
 namespace evert {
 
 // One definition per CPU level, all of svd3_level.cpp.
 namespace detail {
-#if defined(__x86_64__)
-namespace v2 {
-void svd3_batch(const Mat3d* f, std::size_t count, Svd3<double>* svd);
-}
-namespace v3 {
-void svd3_batch(const Mat3d* f, std::size_t count, Svd3<double>* svd);
-}
-namespace v4 {
-void svd3_batch(const Mat3d* f, std::size_t count, Svd3<double>* svd);
-}
-#else
-namespace baseline {
-void svd3_batch(const Mat3d* f, std::size_t count, Svd3<double>* svd);
-}
-#endif
+#define EVERT_DECLARE(level)                                             \
+  namespace level {                                                      \
+  void svd3_batch(const Mat3d* f, std::size_t count, Svd3<double>* svd); \
+  }
+EVERT_FOR_CPU_LEVELS(EVERT_DECLARE)
+#undef EVERT_DECLARE
 }  // namespace detail
 
 std::span<const Svd3BatchLevel> svd3_batch_levels() {
-#if defined(__x86_64__)
-  static const Svd3BatchLevel levels[] = {{"v2", true, detail::v2::svd3_batch},
-                                          {"v3", cpu_supports("v3"), detail::v3::svd3_batch},
-                                          {"v4", cpu_supports("v4"), detail::v4::svd3_batch}};
-#else
-  static const Svd3BatchLevel levels[] = {{"baseline", true, detail::baseline::svd3_batch}};
-#endif
+#define EVERT_LEVEL(level) Svd3BatchLevel{#level, cpu_supports(#level), detail::level::svd3_batch},
+  static const Svd3BatchLevel levels[] = {EVERT_FOR_CPU_LEVELS(EVERT_LEVEL)};
+#undef EVERT_LEVEL
   return levels;
 }
 
@@ -47,6 +36,8 @@ const Svd3BatchLevel& chosen_level() {
     widest = &level;
     if (asked_for != nullptr && asked_for == level.name) break;
   }
+  if (widest == nullptr)
+    throw std::runtime_error("svd3_batch was built for wider registers than this CPU has");
   return *widest;
 }
 

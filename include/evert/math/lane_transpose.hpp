@@ -3,7 +3,6 @@
 #include "evert/math/vec3.hpp"
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
@@ -94,21 +93,19 @@ EVERT_ALWAYS_INLINE Floats16 joined(const Floats8& low, const Floats8& high) {
 /// Doubles as the lanes of T, rounded where T holds floats.
 template <class T>
 EVERT_ALWAYS_INLINE T pack_of(const Quads<T>& quads) {
-  using Simd = std::remove_cvref_t<decltype(T().simd())>;
-  const auto pack = [](const auto& all) { return T(std::bit_cast<Simd>(all)); };
   if constexpr (std::is_same_v<scalar_t<T>, float>) {
     const auto floats = [&](std::size_t i) { return __builtin_convertvector(quads[i], Floats4); };
     if constexpr (lanes_v<T> == 4) {
-      return pack(floats(0));
+      return T(floats(0));
     } else if constexpr (lanes_v<T> == 8) {
-      return pack(joined(floats(0), floats(1)));
+      return T(joined(floats(0), floats(1)));
     } else {
-      return pack(joined(joined(floats(0), floats(1)), joined(floats(2), floats(3))));
+      return T(joined(joined(floats(0), floats(1)), joined(floats(2), floats(3))));
     }
   } else if constexpr (lanes_v<T> == 4) {
-    return pack(quads[0]);
+    return T(quads[0]);
   } else {
-    return pack(joined(quads[0], quads[1]));
+    return T(joined(quads[0], quads[1]));
   }
 }
 
@@ -123,19 +120,19 @@ template <class T>
 EVERT_ALWAYS_INLINE Quads<T> quads_of(const T& pack) {
   if constexpr (std::is_same_v<scalar_t<T>, float>) {
     if constexpr (lanes_v<T> == 4) {
-      return {doubles(std::bit_cast<Floats4>(pack.simd()))};
+      return {doubles(pack.vector())};
     } else if constexpr (lanes_v<T> == 8) {
-      return doubles(std::bit_cast<Floats8>(pack.simd()));
+      return doubles(pack.vector());
     } else {
-      const auto all = std::bit_cast<Floats16>(pack.simd());
+      const auto all = pack.vector();
       const auto low = doubles(Floats8(__builtin_shufflevector(all, all, 0, 1, 2, 3, 4, 5, 6, 7)));
       const auto high = doubles(Floats8(__builtin_shufflevector(all, all, 8, 9, 10, 11, 12, 13, 14, 15)));
       return {low[0], low[1], high[0], high[1]};
     }
   } else if constexpr (lanes_v<T> == 4) {
-    return {std::bit_cast<Quad>(pack.simd())};
+    return {pack.vector()};
   } else {
-    const auto all = std::bit_cast<Octet>(pack.simd());
+    const auto all = pack.vector();
     return {__builtin_shufflevector(all, all, 0, 1, 2, 3), __builtin_shufflevector(all, all, 4, 5, 6, 7)};
   }
 }

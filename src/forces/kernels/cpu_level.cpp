@@ -3,6 +3,7 @@
 #include "evert/core/error.hpp"
 #include "evert/math/cpu_support.hpp"
 
+#include "evert_cpu_levels.hpp"
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -10,34 +11,18 @@
 namespace evert::kernels {
 
 // One definition each per level, all of level.cpp and level_mixed.cpp.
-#if defined(__x86_64__)
-namespace v2 {
-ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
-}  // namespace v2
-namespace v3 {
-ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
-}  // namespace v3
-namespace v4 {
-ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
-}  // namespace v4
-#else
-namespace baseline {
-ElasticKernels find(CellType type, const Material& material, DampingModel damping);
-ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping);
-}  // namespace baseline
-#endif
+#define EVERT_DECLARE(level)                                                                \
+  namespace level {                                                                         \
+  ElasticKernels find(CellType type, const Material& material, DampingModel damping);       \
+  ElasticKernels find_mixed(CellType type, const Material& material, DampingModel damping); \
+  }
+EVERT_FOR_CPU_LEVELS(EVERT_DECLARE)
+#undef EVERT_DECLARE
 
 std::span<const CpuLevel> cpu_levels() {
-#if defined(__x86_64__)
-  static const CpuLevel levels[] = {{"v2", true, v2::find, v2::find_mixed},
-                                    {"v3", cpu_supports("v3"), v3::find, v3::find_mixed},
-                                    {"v4", cpu_supports("v4"), v4::find, v4::find_mixed}};
-#else
-  static const CpuLevel levels[] = {{"baseline", true, baseline::find, baseline::find_mixed}};
-#endif
+#define EVERT_LEVEL(level) CpuLevel{#level, cpu_supports(#level), level::find, level::find_mixed},
+  static const CpuLevel levels[] = {EVERT_FOR_CPU_LEVELS(EVERT_LEVEL)};
+#undef EVERT_LEVEL
   return levels;
 }
 
@@ -51,6 +36,8 @@ const CpuLevel& chosen_cpu_level() {
     widest = &level;
     allowed.emplace_back(level.name);
   }
+  if (widest == nullptr)
+    throw UserError("this program was built for wider registers than this CPU has (EVERT_CPU_LEVELS)");
   if (asked_for == nullptr) return *widest;
   std::string message = "the environment variable EVERT_CPU_LEVEL is '";
   message += asked_for;

@@ -3,7 +3,7 @@
 #include "evert/elements/reference_element.hpp"
 #include "evert/forces/elastic_block.hpp"
 #include "evert/forces/kernels/cpu_level.hpp"
-#include "evert/forces/kernels/kernel_table.hpp"
+#include "evert/forces/kernels/elastic_kernels.hpp"
 #include "evert/mesh/partition.hpp"
 #include "evert/mesh/quadratic.hpp"
 
@@ -228,10 +228,8 @@ inline constexpr Damping objective_damping{DampingModel::objective, 30, 20};
 inline constexpr Damping blended_damping{DampingModel::blended, 30, 20};
 inline constexpr Damping no_damping{};
 
-/// The kernels compiled here for scalars: what every level must agree with.
-inline kernels::ElasticKernels scalar_kernels(CellType type, const Material& material, DampingModel damping) {
-  return kernels::kernels_of<double>(AllReferenceElements{}, type, material, damping);
-}
+/// The kernels on scalars: what every level must agree with.
+kernels::ElasticKernels scalar_kernels(CellType type, const Material& material, DampingModel damping);
 
 inline std::unique_ptr<ElasticBlock> scalar_block(const Body& body, const Material& material,
                                                   const Damping& damping) {

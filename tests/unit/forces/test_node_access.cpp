@@ -10,30 +10,9 @@
 namespace evert::kernels {
 namespace {
 
-/// As much of a simd type as moving nodes takes, of any width on any CPU.
-template <std::size_t width>
-struct PlainSimd {
-  using value_type = double;
-  using mask_type = bool;
-  std::array<double, width> numbers;
-
-  static constexpr std::size_t size() { return width; }
-  PlainSimd() = default;
-  template <class Flags>
-  PlainSimd(const double* from, Flags /*alignment*/) {
-    std::memcpy(numbers.data(), from, sizeof(numbers));
-  }
-  double operator[](std::size_t i) const { return numbers[i]; }
-  friend PlainSimd operator-(PlainSimd a) {
-    for (double& number : a.numbers) number = -number;
-    return a;
-  }
-};
-
 template <class T>
 class NodeAccess : public testing::Test {};
-using Widths =
-    testing::Types<double, BasicPack<PlainSimd<2>>, BasicPack<PlainSimd<4>>, BasicPack<PlainSimd<8>>, Pack>;
+using Widths = testing::Types<double, BasicPack<double, 2>, BasicPack<double, 4>, BasicPack<double, 8>, Pack>;
 TYPED_TEST_SUITE(NodeAccess, Widths);
 
 constexpr std::size_t node_total = 20;

@@ -1,3 +1,4 @@
+#include "evert/forces/kernels/kernel_table.hpp"
 #include "evert/forces/kernels/tensor_product.hpp"
 
 #include <gtest/gtest.h>

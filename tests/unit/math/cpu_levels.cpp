@@ -1,5 +1,7 @@
 #include "cpu_levels.hpp"
 
+#include "evert/math/cpu_support.hpp"
+
 #include <cstdio>
 #include <vector>
 
@@ -8,21 +10,17 @@ namespace evert::test {
 std::span<const LevelKernels* const> runnable_levels() {
   static const std::vector<const LevelKernels*> levels = [] {
     std::vector<const LevelKernels*> runnable;
-#if defined(__x86_64__)
-    const auto add = [&](const LevelKernels& kernels, int supported) {
-      if (supported != 0) {
+    const auto add = [&](const LevelKernels& kernels) {
+      if (cpu_supports(kernels.name)) {
         runnable.push_back(&kernels);
       } else {
         std::printf("this CPU does not run x86-64-%s: its kernels are compiled but not tested\n",
                     kernels.name);
       }
     };
-    add(v2::kernels(), __builtin_cpu_supports("x86-64-v2"));
-    add(v3::kernels(), __builtin_cpu_supports("x86-64-v3"));
-    add(v4::kernels(), __builtin_cpu_supports("x86-64-v4"));
-#else
-    runnable.push_back(&baseline::kernels());
-#endif
+#define EVERT_ADD(level) add(level::kernels());
+    EVERT_FOR_CPU_LEVELS(EVERT_ADD)
+#undef EVERT_ADD
     return runnable;
   }();
   return levels;

@@ -1,4 +1,5 @@
 #pragma once
+#include "evert_cpu_levels.hpp"
 #include <cstddef>
 
 /// The functions under test, over plain arrays, compiled once per CPU level (see CMakeLists.txt). This header
@@ -62,17 +63,11 @@ struct LevelKernels {
   void (*isotropic)(const double* f, IsotropicArrays result, std::size_t count);
 };
 
-namespace baseline {
-const LevelKernels& kernels();
-}
-namespace v2 {
-const LevelKernels& kernels();
-}
-namespace v3 {
-const LevelKernels& kernels();
-}
-namespace v4 {
-const LevelKernels& kernels();
-}
+#define EVERT_DECLARE(level)     \
+  namespace level {              \
+  const LevelKernels& kernels(); \
+  }
+EVERT_FOR_CPU_LEVELS(EVERT_DECLARE)
+#undef EVERT_DECLARE
 
 }  // namespace evert::test

@@ -18,11 +18,11 @@ struct CpuLevel {
   ElasticKernels (*find_mixed)(CellType type, const Material& material, DampingModel damping);
 };
 
-/// Those compiled in, narrowest first; the first runs on every CPU that this binary starts on.
+/// Those compiled in (EVERT_CPU_LEVELS of the build), narrowest first.
 [[nodiscard]] std::span<const CpuLevel> cpu_levels();
 
 /// The widest that this CPU supports, or what the environment variable EVERT_CPU_LEVEL names. Throws
-/// UserError when that is an unknown level or one that this CPU lacks.
+/// UserError when that is an unknown level or one that this CPU lacks, or when it runs none.
 [[nodiscard]] const CpuLevel& chosen_cpu_level();
 
 }  // namespace evert::kernels
