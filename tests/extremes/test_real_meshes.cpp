@@ -1,6 +1,7 @@
 // Real meshes dropped on the ground: finite, and what the world gave is what they have.
 #include <gtest/gtest.h>
 
+#include "tests/support/ranks.hpp"
 #include "tests/support/scenes.hpp"
 #include <chrono>
 #include <cmath>
@@ -51,6 +52,8 @@ class RealMesh : public testing::TestWithParam<const char*> {};
 
 /// The large ones for minutes with EVERT_ALL_MESHES=1, else until they have hit the ground.
 TEST_P(RealMesh, DropsForASecondAndKeepsTheBalance) {
+  if (test::shown_on_one_rank() && GetParam() != std::string("dolphin5K.msh"))
+    GTEST_SKIP() << "shown on one rank";
   const bool whole = std::string(GetParam()) == "liver.msh" || std::getenv("EVERT_ALL_MESHES") != nullptr;
   const char* folder = std::getenv("EVERT_SHARED_MESHES");
   const auto path = std::filesystem::path(folder == nullptr ? "" : folder) / GetParam();

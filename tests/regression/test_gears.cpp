@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/examples.hpp"
+#include "tests/support/ranks.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
 #include <string>
@@ -35,6 +36,8 @@ void PrintTo(const Case& c, std::ostream* out) { *out << name_of(c); }
 class Drawn : public testing::TestWithParam<Case> {};
 
 TEST_P(Drawn, ThroughGearsItRecovers) {
+  if (test::shown_on_one_rank() && name_of(GetParam()) != "hex_gears_as_they_are")
+    GTEST_SKIP() << "shown on one rank";
   const auto& [body, gears] = GetParam();
   auto overrides = body.coarse;
   overrides.insert(overrides.end(), gears.overrides.begin(), gears.overrides.end());

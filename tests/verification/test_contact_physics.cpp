@@ -1,6 +1,7 @@
 // Friction and bounces against closed forms.
 #include <gtest/gtest.h>
 
+#include "tests/support/ranks.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <cmath>
@@ -56,6 +57,7 @@ TEST(Friction, SlidesWithCoulombsAcceleration) {
 }
 
 TEST(Friction, SticksBelowTheCoulombAngle) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   const double friction = 0.3;
   for (const double damping_time : {5e-4, 5e-3}) {  // with the latter a step spans several undamped ones
     auto scene = block_on_slope(std::atan(friction) * 0.9, friction, damping_time);
@@ -86,6 +88,7 @@ TEST(Friction, ImpulsesBalanceTheMomentum) {
 }
 
 TEST(Bounce, LosesHeightEveryTimeAndNeverGainsEnergy) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   auto scene = test::build(R"(
 name: bounce
 end_time: 3

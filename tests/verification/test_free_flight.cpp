@@ -3,6 +3,7 @@
 
 #include "tests/support/free_flight.hpp"
 #include "tests/support/petsc_options.hpp"
+#include "tests/support/ranks.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
 #include <cmath>
@@ -52,6 +53,8 @@ void expect_conserved(const Drift& drift, const std::string& flight) {
 }
 
 TEST_P(ElasticModels, ConserveMomentaAndEnergyOver10000Steps) {
+  if (test::shown_on_one_rank() && GetParam() != std::string("neo_hookean"))
+    GTEST_SKIP() << "shown on one rank";
   auto& simulation = *scene_.simulation;
   const auto drift = drift_of_flight(simulation, half_stable_step(simulation));
   const std::string flight =
@@ -72,6 +75,7 @@ void expect_second_order(const Positions& positions_with, const std::string& wha
 }
 
 TEST_P(ElasticModels, AreOfSecondOrderInTheStep) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   const double end = 20 * half_stable_step(*scene_.simulation);
   const auto positions_with = [&](int steps) {
     auto scene = test::build(spinning_ball, {std::string("bodies.ball.material.model=") + GetParam()});
@@ -100,6 +104,7 @@ class ConsistentFlight : public testing::TestWithParam<const char*> {};
 /// The element and its masses take part in a flight of the same body. Momentum is balanced to the tolerance
 /// of the solves, which is set so that 10,000 steps of it are 1e-12.
 TEST_P(ConsistentFlight, ConservesMomentaAndEnergyOver10000Steps) {
+  if (test::shown_on_one_rank() && GetParam() != std::string("tet4")) GTEST_SKIP() << "shown on one rank";
   const test::Options tolerance{{"-damping_ksp_rtol", "1e-14"}};
   const std::string mesh =
       GetParam() == std::string("hex8") || GetParam() == std::string("wedge6")
@@ -119,6 +124,7 @@ TEST_P(ConsistentFlight, ConservesMomentaAndEnergyOver10000Steps) {
 INSTANTIATE_TEST_SUITE_P(All, ConsistentFlight, testing::Values("tet4", "hex8", "wedge6", "tet10"));
 
 TEST(ConsistentMasses, AreOfSecondOrderInTheStep) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   const std::vector<std::string> consistent{
       "bodies.ball.mesh={generate: box, size: [0.8, 0.6, 0.5], cells: [1, 1, 1], cell: tet6}",
       "bodies.ball.order=2", "integrator={mass: consistent}"};
@@ -133,6 +139,7 @@ TEST(ConsistentMasses, AreOfSecondOrderInTheStep) {
 }
 
 TEST(Damping, IsOfSecondOrderAndOnlyTakesEnergy) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   const test::Options tolerance{{"-damping_ksp_rtol", "1e-12"}};
   const std::vector<std::string> damped{
       "bodies.ball.damping={model: rotated, stiffness_proportional: 2.0e-3}"};

@@ -9,6 +9,7 @@
 
 #include "tests/support/petsc_options.hpp"
 #include "tests/support/quadrature.hpp"
+#include "tests/support/ranks.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
 #include <array>
@@ -213,6 +214,8 @@ void expect_orders(const char* kind, const Expected& expected, Solve&& solve) {
 class StaticOrder : public testing::TestWithParam<Expected> {};
 
 TEST_P(StaticOrder, IsThatOfTheory) {
+  if (test::shown_on_one_rank() && GetParam().element != std::string("hex8"))
+    GTEST_SKIP() << "shown on one rank";
   const auto solver = test::quasistatic_solver();
   expect_orders("static", GetParam(), [&](int n) { return static_errors(GetParam().element, n); });
 }
@@ -232,6 +235,8 @@ class DynamicOrders : public testing::TestWithParam<Expected> {};
 constexpr int steps_a_cell = 15;
 
 TEST_P(DynamicOrders, IsThatOfTheory) {
+  if (test::shown_on_one_rank() && GetParam().element != std::string("tet4"))
+    GTEST_SKIP() << "shown on one rank";
   expect_orders("dynamic", GetParam(), [&](int n) {
     return dynamic_errors(GetParam().element, n, steps_a_cell * n, Growth::accelerated);
   });
@@ -246,11 +251,13 @@ INSTANTIATE_TEST_SUITE_P(All, DynamicOrders,
 // No lumped masses of tet10 that are positive are consistent: accelerations have an error of second order in
 // the positions, and of first order or less in the stress. Without acceleration it is the element's own.
 TEST(DynamicOrder, OfTet10IsTheElementsOwnWhereNothingAccelerates) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   expect_orders("dynamic, unaccelerated", Expected{"tet10", {2, 3, 5}, 2.8, 1.8},
                 [](int n) { return dynamic_errors("tet10", n, 40 * n, Growth::steady); });
 }
 
 TEST(DynamicOrder, OfTet10IsThatOfItsLumpedMassesWhereItAccelerates) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   expect_orders("dynamic, accelerated", Expected{"tet10", {2, 3, 5}, 1.9, 0},
                 [](int n) { return dynamic_errors("tet10", n, 40 * n, Growth::accelerated); });
 }
@@ -260,6 +267,8 @@ class ConsistentOrders : public testing::TestWithParam<Expected> {};
 /// The scheme is exact for motions of second degree in time, whatever the steps, if they are stable. The
 /// solves are good to a thousandth of the smallest error.
 TEST_P(ConsistentOrders, AreThoseOfTheoryWhereItAccelerates) {
+  if (test::shown_on_one_rank() && GetParam().element != std::string("wedge6"))
+    GTEST_SKIP() << "shown on one rank";
   const test::Options tolerance{{"-damping_ksp_rtol", "1e-6"}};
   const int steps = GetParam().element == std::string("tet10") ? 20 : 8;
   expect_orders("dynamic, consistent masses", GetParam(), [&](int n) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/ranks.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
@@ -81,6 +82,7 @@ TEST(Obstacles, ReportWhatTheBodyGets) {
 /// A ball thrown into a pen of smooth, resting obstacles: no step gains energy but for what the explicit
 /// scheme's own energy swings by.
 TEST(Obstacles, AtRestAndSmoothGiveNoEnergy) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   auto scene = test::build(R"(
 name: pen
 end_time: 2

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/petsc_options.hpp"
+#include "tests/support/ranks.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <algorithm>
@@ -55,6 +56,7 @@ std::vector<double> residuals_of(const std::string& file) {
 // r_{k+1} = C r_k²: the logarithm of the residual doubles. Two steps in a row must show it before rounding
 // ends it, with exact linear solves; the tangent is the full one there (adaptive).
 TEST_F(QuasistaticSolve, ConvergesQuadraticallyNearRest) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   const auto file =
       std::filesystem::temp_directory_path() / ("evert_snes_" + std::to_string(getppid()) + ".log");
   std::vector<double> norms;
@@ -84,6 +86,7 @@ TEST_F(QuasistaticSolve, ConvergesQuadraticallyNearRest) {
 }
 
 TEST_F(QuasistaticSolve, AgreesWithTheDampedMotion) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   const test::Options tight{{"-quasistatic_snes_rtol", "1e-11"}};
   auto still = test::build(bar);
   still.simulation->step_to(1);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/petsc_options.hpp"
+#include "tests/support/ranks.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/verify.hpp"
 #include <cmath>
@@ -91,6 +92,7 @@ obstacles:
 }
 
 TEST(RigidAndNodes, ABallComesToRestOnAMattressHoweverLight) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   for (const std::string mass : {"0.01", "3"}) {
     auto scene = test::build(ball_on_mattress(mass));
     auto& simulation = *scene.simulation;
@@ -177,6 +179,7 @@ TEST(MovingObstacles, ABlockIsCarriedByABelt) {
 }
 
 TEST(MovingObstacles, ABlockIsPulledByABeltWhateverTheMethod) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   constexpr double mass = 2, pull = 0.3 * 9.81;
   for (const char* method : {"verlet", "symplectic_euler"}) {
     auto scene = test::build(
@@ -196,6 +199,7 @@ TEST(MovingObstacles, ABlockIsPulledByABeltWhateverTheMethod) {
 }
 
 TEST(MovingObstacles, ABlockGoesRoundOnATurningDisk) {
+  if (test::shown_on_one_rank()) GTEST_SKIP() << "shown on one rank";
   constexpr double spin = 1.5, radius = 0.5;  // ω² r = 1.1 m/s², less than friction may give
   auto scene = test::build(block_on("angular_velocity: [0, 1.5, 0], about: [0, 0, 0]"),
                            {"bodies.block.velocity=[0, 0, -0.75]", "bodies.block.spin=[0, 1.5, 0]"});
