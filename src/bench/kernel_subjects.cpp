@@ -79,7 +79,8 @@ std::unique_ptr<ElasticBlock> plastic_block(const Specimen& specimen, double yie
 
 PlasticForces not_yielding(const Specimen& specimen) {
   const auto x = specimen.positions.local();
-  const AlignedVector<double> same(x.begin(), x.end());
+  AlignedVector<double> same(x.begin(), x.end());
+  same.push_back(0);  // the slack of NodeField
   return {plastic_block(specimen, std::numeric_limits<double>::infinity()), {same, same}};
 }
 
