@@ -26,6 +26,7 @@ class Counted {
   [[nodiscard]] double value() const { return value_; }
   static OperationLog& so_far();
 
+  /// What load(), store() and lane() of math/pack.hpp call of a pack.
   static Counted load(const double* from) noexcept;
   static Counted load(const float* from);  ///< of measures, which are not counted
   void store(double* to) const noexcept;
